@@ -58,15 +58,16 @@ pub fn segments<const D: usize>(
 }
 
 /// The same with a rule that does not depend on the position of the sides: what changes with them changes without jumps.
-/// `extra` are further points for each direction of a piece.
+/// `extra` are further points for each direction of a piece; `sees` tells which slave face may touch which master face.
 pub fn pieces<const D: usize>(
     slave: &dyn ContactSurface<D>,
     master: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
-    reach: f64,
-    extra: usize,
+    (reach, extra): (f64, usize),
+    sees: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<Vec<GapPoint<D>>> {
-    let candidates = candidates(slave, master, nodes, reach);
+    let mut candidates = candidates(slave, master, nodes, reach);
+    candidates.iter_mut().enumerate().for_each(|(face, list)| list.retain(|other| sees(face, *other)));
     let cut = Cut { slave, master, nodes, reach, extra };
     let of = |(face, list): (usize, &Vec<usize>)| pieces_of_face(cut, face, list);
     candidates.iter().enumerate().map(of).collect()

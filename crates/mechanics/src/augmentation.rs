@@ -4,11 +4,14 @@
 use crate::equilibrium::ROUNDING;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
-use crate::interaction::{Around, Bodies};
+use crate::interaction::{Around, Bodies, Interaction};
 use crate::linear_solver::Solved;
 use crate::points::Order;
 use crate::simpler::SimplerFriction;
 use crate::system::{AssemblyError, System, SystemState};
+
+/// Gap beyond the least one, relative to the size of the body, of contacts in which it lands at the same time.
+const LANDS: f64 = 1e-9;
 
 impl System {
     /// A state near the one that is looked for, with contacts that give way as by penalties, or else with all that touches
@@ -32,13 +35,32 @@ impl System {
 
     /// Multipliers that bear what is out of balance without them.
     pub(crate) fn guess(&self, state: &SystemState, time: f64) -> Result<Vec<f64>, IncrementError> {
-        if !self.has_free_body() {
-            return Ok(state.multipliers.clone());
-        }
         let residual = self.assemble(state, time, Order::First)?.residual;
         let (first, _) = self.numbering();
         let at = self.bodies_in(state, &first);
-        Ok(self.contacts.iter().flat_map(|contact| contact.guess(at, &residual)).collect())
+        let lands = self.lands(at);
+        let of = |(contact, lands): (&Box<dyn Interaction>, &bool)| match lands {
+            true => contact.guess(at, &residual),
+            false => contact.remembered(),
+        };
+        Ok(self.contacts.iter().zip(&lands).flat_map(of).collect())
+    }
+
+    /// Which contacts may guess what carries: of those that guess by gaps the one with the least gap about each body that
+    /// nothing else holds.
+    fn lands(&self, at: Bodies<'_>) -> Vec<bool> {
+        let gaps: Vec<Option<f64>> = self.contacts.iter().map(|contact| contact.least_gap(at)).collect();
+        let mut out: Vec<bool> =
+            self.contacts.iter().zip(&gaps).map(|(c, gap)| gap.is_none() && c.is_exact()).collect();
+        for body in (0..self.bodies.len()).filter(|body| self.is_unheld(*body)) {
+            let of_body = |k: &usize| self.contacts[*k].bodies().contains(&body);
+            let near = LANDS * self.bodies[body].size();
+            let least = (0..gaps.len()).filter(of_body).filter_map(|k| gaps[k]).fold(f64::INFINITY, f64::min);
+            for k in (0..gaps.len()).filter(of_body) {
+                out[k] |= gaps[k].is_some_and(|gap| gap <= least + near);
+            }
+        }
+        out
     }
 
     /// Sets multipliers to the tractions found, penalties to what leaves the penetration that is wanted; the largest

@@ -51,8 +51,10 @@ pub(crate) struct Problem<'a> {
     pub(crate) scales: Vec<f64>,
     /// The system at the start, for the first step.
     pub(crate) first: Option<Assembled>,
-    /// What rounding of positions leaves of forces and moments.
+    /// What rounding of positions leaves of forces and moments, near the last state.
     pub(crate) rounding: [f64; 2],
+    /// How far bodies had moved when springs were set anew, in sizes of all: positions are rounded by as much more.
+    pub(crate) gone: f64,
     /// The unknown that lacks most.
     pub(crate) worst: usize,
 }
@@ -99,7 +101,7 @@ impl Problem<'_> {
     fn carried_away(&self, at: &SystemState) -> Option<String> {
         let moved = |k: &usize| if self.is_spin[*k] { 0.0 } else { at.travel[*k].abs() };
         let farthest = (0..self.is_spin.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
-        let away = moved(&farthest) / self.system.size();
+        let away = self.sizes_moved(&at.travel);
         carried_away(self.body_of(farthest)?.0, away)
     }
 
@@ -238,6 +240,8 @@ impl Equations for Problem<'_> {
         scale[1] = scale[1].max(scale[0] * size * 1e-6);
         let mut held = vec![false; count];
         out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        let away = 1.0 + self.gone + self.sizes_moved(&at.travel);
+        let rounding = self.rounding.map(|r| r * away);
         let mut worst = (0.0f64, 0);
         let mut take = |value: f64, k: usize| {
             if value > worst.0 || value.is_nan() {
@@ -246,12 +250,12 @@ impl Equations for Problem<'_> {
         };
         for k in (0..count).filter(|k| !held[*k]) {
             let kind = usize::from(self.is_spin[k]);
-            take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(self.rounding[kind]), k);
+            take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(rounding[kind]), k);
         }
         for (k, [c, _]) in self.rows.iter().enumerate() {
             // Gaps no better than the rounding of positions.
             let force = out.residual[count + k].abs() * c;
-            take(force / (TOLERANCE * scale[0]).max(self.rounding[0]), count + k);
+            take(force / (TOLERANCE * scale[0]).max(rounding[0]), count + k);
         }
         for held in out.single.iter().chain(&out.coupled) {
             take(held.constraint.lack.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);

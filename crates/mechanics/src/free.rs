@@ -7,6 +7,7 @@ use crate::linear_solver::Stiffness;
 use crate::points::Order;
 use crate::system::{AssemblyError, Held, System, SystemState, TimedLoad};
 use nalgebra::{DMatrix, DVector};
+use signorini_contact::Status;
 use signorini_geometry::Vector;
 
 /// A body that went so many sizes away, or turned so often, is not held.
@@ -41,17 +42,17 @@ impl System {
     /// Whether a body may move freely where no contact holds it: a rigid one, or one of small strains that neither supports
     /// nor springs hold.
     pub(crate) fn has_free_body(&self) -> bool {
-        let is_free = |k: usize| {
-            let body = &self.bodies[k];
-            body.is_rigid() || (body.is_linear() && matches!(self.free_motion(k), Ok(Some(_))))
-        };
+        let is_free = |k: usize| self.bodies[k].is_rigid() || (self.bodies[k].is_linear() && self.is_unheld(k));
         (0..self.bodies.len()).any(|k| self.bodies[k].unknowns() > 0 && is_free(k))
     }
 
     /// Whether a body may move rigidly where no contact holds it, whatever it is like.
+    pub(crate) fn is_unheld(&self, body: usize) -> bool {
+        self.bodies[body].unknowns() > 0 && matches!(self.free_motion(body), Ok(Some(_)))
+    }
+
     pub(crate) fn has_unheld_body(&self) -> bool {
-        let moves = (0..self.bodies.len()).filter(|k| self.bodies[*k].unknowns() > 0);
-        moves.into_iter().any(|k| matches!(self.free_motion(k), Ok(Some(_))))
+        (0..self.bodies.len()).any(|body| self.is_unheld(body))
     }
 
     /// Whether there is friction.
@@ -74,7 +75,10 @@ impl System {
     }
 
     /// A rigid motion of a body against which nothing holds it at rest: neither supports nor springs.
-    fn free_motion(&self, k: usize) -> Result<Option<String>, AssemblyError> {
+    ///
+    /// # Errors
+    /// Supports and loads that cannot act.
+    pub fn free_motion(&self, k: usize) -> Result<Option<String>, AssemblyError> {
         let at = self.start();
         let (first, _) = self.numbering();
         let range = first[k] as usize..first[k] as usize + self.bodies[k].unknowns();
@@ -145,6 +149,12 @@ impl Problem<'_> {
         travel.iter().enumerate().any(|(k, t)| t.is_nan() || self.sizes_gone(k, *t) > AWAY)
     }
 
+    /// The farthest way of a point, in sizes of all bodies.
+    pub(crate) fn sizes_moved(&self, travel: &[f64]) -> f64 {
+        let moved = travel.iter().zip(&self.is_spin).filter(|(_, turns)| !**turns).map(|(t, _)| t.abs());
+        moved.fold(0.0, f64::max) / self.system.size()
+    }
+
     fn sizes_gone(&self, unknown: usize, travel: f64) -> f64 {
         travel.abs() / if self.is_spin[unknown] { std::f64::consts::TAU } else { self.system.size() }
     }
@@ -207,7 +217,16 @@ impl Problem<'_> {
         let own = first[k] as usize..first[k] as usize + body.unknowns();
         let (travel, is_spin) = (&at.travel[own.clone()], &self.is_spin[own]);
         let motion = motion_in_words((body.as_ref(), &at.bodies[k]), (travel, is_spin), self.is_spin[unknown]);
+        let motion =
+            if self.system.rubs() && self.touches(k, at) { motion.replacen("moving", "sliding", 1) } else { motion };
         IncrementError::Free { body: body.name().to_string(), motion }
+    }
+
+    /// Whether a contact of a body carries.
+    fn touches(&self, body: usize, at: &SystemState) -> bool {
+        let own = (0..self.system.contacts.len()).filter(|k| self.system.contacts[*k].bodies().contains(&body));
+        let mut sites = own.filter_map(|k| self.system.sites(k, at).ok()).flatten();
+        sites.any(|site| site.status != Status::Open)
     }
 
     pub(crate) fn body_of(&self, unknown: usize) -> Option<(&str, usize)> {

@@ -99,6 +99,7 @@ impl Problem<'_> {
                 }
                 Ok(mut found) => {
                     total.iter_mut().zip(&found.state.travel).for_each(|(t, s)| *t += s);
+                    self.gone = self.sizes_moved(&total);
                     found.state.travel.clone_from(&total);
                     if self.is_far(&total) {
                         return Err(self.free(&found.state));

@@ -297,6 +297,7 @@ impl System {
             scales: Vec::new(),
             first: None,
             rounding: [0.0; 2],
+            gone: 0.0,
             worst: 0,
         };
         let found = match way {

@@ -120,6 +120,11 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
+    /// The least gap in a state, if it can guess what carries a body that nothing else holds.
+    fn least_gap(&self, _at: Bodies<'_>) -> Option<f64> {
+        None
+    }
+
     /// Values of its unknowns that would bear forces that are out of balance without them; none where that is no good guess.
     fn guess(&self, _at: Bodies<'_>, _residual: &[f64]) -> Vec<f64> {
         self.remembered()

@@ -19,11 +19,13 @@
 
 mod axes;
 mod cover;
+mod facing;
 mod force;
 mod interaction;
 mod measure;
 mod saved;
 mod shown;
+mod small;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::enforcement::Enforcement;
@@ -32,10 +34,12 @@ use crate::part::Part;
 use crate::simpler::SetAside;
 use crate::surface::Local;
 use cover::{Nodes, Search};
+use facing::Facing;
 use measure::{Matched, NodeMeasure};
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
+use small::SmallSliding;
 
 /// Contact of a surface of faces with another one, or with a rigid body.
 pub struct Mortar {
@@ -67,6 +71,8 @@ pub struct Mortar {
     turned: Vector<3>,
     /// Times of the last state and of the one that is looked for.
     times: [f64; 2],
+    /// None where sides slide as far as they slide.
+    small: Option<SmallSliding>,
     /// What is stated, while a start is looked for with something simpler.
     set_aside: Option<SetAside>,
 }
@@ -126,7 +132,8 @@ impl Mortar {
         let nodes = Nodes::new(surface.faces().0);
         let places = nodes.places();
         let folded = vec![false; places.len()];
-        let whole = nodes.whole(surface.as_ref(), &folded).weight;
+        let facing = Facing::new((&slave.0, slave.1), surface.as_ref(), (&master.0, master.1))?;
+        let whole = nodes.whole(surface.as_ref(), &facing, &folded).weight;
         let stiffness = places.iter().map(|(face, _)| surface.stiffness(*face)).collect();
         let reach = 0.5 * slave.1.size().min(if master.1.is_rigid() { f64::INFINITY } else { master.1.size() });
         drop(surface);
@@ -137,7 +144,7 @@ impl Mortar {
             enforcement,
             friction: None,
             axis: AxisChoice::Material,
-            search: Search { reach, extra: 0 },
+            search: Search { reach, extra: 0, facing },
             memory: vec![NodeMemory::default(); places.len()],
             nodes,
             places,
@@ -149,6 +156,7 @@ impl Mortar {
             matched: Vec::new(),
             turned: Vector::<3>::zeros(),
             times: [0.0; 2],
+            small: None,
             set_aside: None,
         })
     }

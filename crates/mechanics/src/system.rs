@@ -239,6 +239,15 @@ impl System {
             .collect()
     }
 
+    /// Whether supports agree with each other at a time, with the bodies at rest.
+    ///
+    /// # Errors
+    /// Two that prescribe different displacements.
+    pub fn check_supports(&self, time: f64) -> Result<(), AssemblyError> {
+        self.held(&self.start().bodies, time)?;
+        Ok(())
+    }
+
     /// The equations of all supports.
     pub(crate) fn held(&self, bodies: &[BodyState], time: f64) -> Result<(Vec<Held>, Vec<Held>), AssemblyError> {
         let (first, count) = self.numbering();

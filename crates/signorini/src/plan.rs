@@ -36,8 +36,6 @@ pub use surface::Contact;
 pub enum Plan {
     Line(MembranePlan<1>),
     Plane(MembranePlan<2>),
-    PlaneSolids(Box<solid::SolidPlan<2>>),
-    Solids(Box<solid::SolidPlan<3>>),
     Mechanics(Box<mechanics::MechanicsPlan>),
 }
 
@@ -54,18 +52,21 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
         return Ok(Plan::Mechanics(Box::new(Planner::new(problem)?.mechanics()?)));
     }
     if let Some(stability) = &problem.stability {
-        let message = "`stability` is for systems: with ropes, beams, free bodies, finite strain or finite sliding";
-        return Err(problem.error(stability, message));
+        return Err(problem.error(stability, "`stability` is not for membranes"));
     }
     match problem.space {
-        Space::PlaneStrain | Space::PlaneStress => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
-        }
-        Space::ThreeD => Ok(Plan::Solids(Box::new(Planner::new(problem)?.solids::<3>()?))),
-        Space::Axisymmetric if problem.bodies.values().any(|b| matches!(b, Body::Solid(_))) => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
-        }
+        Space::PlaneStrain | Space::PlaneStress | Space::ThreeD => Err(no_body_here(problem)),
         Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(problem)?.membrane::<1>()?)),
         Space::Plane => Ok(Plan::Plane(Planner::new(problem)?.membrane::<2>()?)),
     }
+}
+
+/// A case for bodies in space or in a plane that has none.
+fn no_body_here(problem: &Problem) -> CaseError {
+    if problem.bodies.values().any(|b| matches!(b, Body::Membrane(_))) {
+        return problem
+            .error(&problem.space, "this space is for solids, but the case has a membrane")
+            .help("for membranes: space = \"line\", \"axisymmetric\" or \"plane\"");
+    }
+    problem.error(&problem.space, "no body deforms or moves").help("add a body, for example  [bodies.block.solid]")
 }

@@ -12,7 +12,9 @@ mod hold;
 mod loads;
 mod master;
 mod moments;
+mod projection;
 mod surface;
+mod traction;
 
 pub use edge::{EdgeError, EdgeOf};
 
@@ -28,8 +30,8 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Hold, Load, Master, Order, PlaceError,
-    Placed, Sampling, Site, Surface,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Direction, Hold, Load, Master, Order,
+    PlaceError, Placed, Sampling, Site, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -331,6 +333,15 @@ impl<const D: usize> Body for SolidBody<D> {
         }
         let body = self.body();
         body.material.youngs_modulus * site.weight * body.degree as f64 / self.faces.depth(site)
+    }
+
+    fn traction(&self, state: &BodyState, site: &Site) -> Option<Direction> {
+        self.traction_at(state, site)
+    }
+
+    /// `E p²/h`.
+    fn stabilisation(&self, site: &Site) -> f64 {
+        self.body().degree as f64 * self.site_stiffness(site) / site.weight
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {

@@ -188,16 +188,16 @@ pub(crate) fn stiffness<const D: usize>(
     stiffness
 }
 
-/// The normal stress `n·σ n` at a point of a cell as a combination of its unknowns, (function, component) in the order
-/// and sign of the basis; with the divergence projected where the stiffness has it so.
-pub(crate) fn normal_stress<const D: usize>(
+/// The traction `σ n` at a point of a cell by each of its unknowns, (function, component) in the order and sign of the basis;
+/// with the divergence projected where the stiffness has it so.
+pub(crate) fn traction<const D: usize>(
     mesh: &Mesh<D>,
     cell: usize,
     table: &Table,
     basis: &HierarchicBasis,
     (material, space): (&Elastic, Space),
     (xi, normal): (&Local, &Point<D>),
-) -> Vec<f64> {
+) -> Vec<Point<D>> {
     let (lambda, mu) = material.lame(space);
     let n = basis.len();
     let mut here = Table { points: vec![(*xi, 1.0)], map: vec![Values::default()], basis: vec![Values::default()] };
@@ -214,11 +214,14 @@ pub(crate) fn normal_stress<const D: usize>(
             divergence = (moments * factor.solve(&pressures::<D>(basis, &here))).iter().copied().collect();
         }
     }
-    let mut out = vec![0.0; n * D];
+    let mut out = vec![Point::<D>::zeros(); n * D];
     for a in 0..n {
-        let along: f64 = (0..D).map(|i| at.gradients[i][(a, 0)] * normal[i]).sum();
+        let gradient = Point::<D>::from_fn(|i, _| at.gradients[i][(a, 0)]);
         for i in 0..D {
-            out[a * D + i] = 2.0 * mu * along * normal[i] + lambda * divergence[a * D + i];
+            // 2 ε n of the function along a component: `∇φ·n e_i + n_i ∇φ`.
+            let traction = &mut out[a * D + i];
+            *traction = gradient * (mu * normal[i]) + normal * (lambda * divergence[a * D + i]);
+            traction[i] += mu * gradient.dot(normal);
         }
     }
     out

@@ -4,6 +4,7 @@
 //! Pieces and gaps are those of the current configuration, weights those of the reference one: the dual functions of faces
 //! that are covered completely are then always the same.
 
+use super::facing::Facing;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
     ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
@@ -28,6 +29,7 @@ pub(super) struct CoveredPoint {
 }
 
 /// The part of the slave side that sees its master.
+#[derive(Clone)]
 pub(super) struct Cover {
     /// By face.
     pub points: Vec<Vec<CoveredPoint>>,
@@ -44,11 +46,12 @@ impl Cover {
 }
 
 /// How pieces are found and integrated.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Search {
     pub reach: f64,
     /// Points of a piece along each direction beyond those that its degree asks for.
     pub extra: usize,
+    pub facing: Facing,
 }
 
 impl Nodes {
@@ -72,16 +75,16 @@ impl Nodes {
     }
 
     /// All of the slave side; `folded` nodes have no pressure of their own.
-    pub fn whole(&self, slave: &dyn Surface, folded: &[bool]) -> Cover {
+    pub fn whole(&self, slave: &dyn Surface, faces: &Facing, folded: &[bool]) -> Cover {
         match (self, slave.faces().0) {
-            (Nodes::Plane(nodes), Faces::Plane(faces)) => whole(nodes, faces, folded),
-            (Nodes::Space(nodes), Faces::Space(faces)) => whole(nodes, faces, folded),
+            (Nodes::Plane(nodes), Faces::Plane(of)) => whole(nodes, of, faces, folded),
+            (Nodes::Space(nodes), Faces::Space(of)) => whole(nodes, of, faces, folded),
             _ => Cover::none(folded.len()),
         }
     }
 
     /// What of the slave side sees the master.
-    pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: Search, folded: &[bool]) -> Cover {
+    pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: &Search, folded: &[bool]) -> Cover {
         match (self, slave.faces().0, master.faces().0) {
             (Nodes::Plane(nodes), Faces::Plane(a), Faces::Plane(b)) => {
                 cut(nodes, [a, b], [slave, master], search, folded)
@@ -104,16 +107,23 @@ fn places<const D: usize>(nodes: &PressureNodes<D>) -> Vec<(usize, Local)> {
     out
 }
 
-fn whole<const D: usize>(nodes: &PressureNodes<D>, faces: &dyn ContactSurface<D>, folded: &[bool]) -> Cover {
+fn whole<const D: usize>(
+    nodes: &PressureNodes<D>,
+    faces: &dyn ContactSurface<D>,
+    facing: &Facing,
+    folded: &[bool],
+) -> Cover {
     let nowhere = |_: &Point<D>| GapJet::flat(0.0, Point::<D>::zeros());
-    cover(nodes, faces, rigid_points(faces, &nowhere), folded)
+    let mut points = rigid_points(faces, &nowhere);
+    points.iter_mut().enumerate().filter(|(face, _)| !facing.slave(*face)).for_each(|(_, list)| list.clear());
+    cover(nodes, faces, points, folded)
 }
 
 fn cut<const D: usize>(
     nodes: &PressureNodes<D>,
     [slave, master]: [&dyn ContactSurface<D>; 2],
     placed: [&dyn Surface; 2],
-    search: Search,
+    search: &Search,
     folded: &[bool],
 ) -> Cover {
     let nodes = nodes.with_normals(&|face, s| {
@@ -122,7 +132,9 @@ fn cut<const D: usize>(
     });
     let moved = Moved { surface: slave, u: placed[0].faces().1 };
     let other = Moved { surface: master, u: placed[1].faces().1 };
-    let mut points = pieces(&moved, &other, &nodes, search.reach, search.extra);
+    let mut points = pieces(&moved, &other, &nodes, (search.reach, search.extra), &|face, other| {
+        search.facing.slave(face) && search.facing.master(other)
+    });
     for (face, list) in points.iter_mut().enumerate() {
         for point in list {
             let area = |faces: &dyn ContactSurface<D>| {

@@ -104,8 +104,11 @@ impl Assembly<'_> {
         let (mut columns, mut rows): (Lines, Lines) = (HashMap::new(), HashMap::new());
         let size = block.unknowns.len();
         for (point, pair) in found {
-            let linearises = out.tangent.is_some();
-            let second = linearises.then(|| self.sides.pair(point, rubs, Order::Second).ok()).flatten();
+            let is_linear = contact.small.is_some();
+            let measured = (out.tangent.is_some() && !is_linear)
+                .then(|| self.sides.pair(point, rubs, Order::Second).ok())
+                .flatten();
+            let linearised = if is_linear { out.tangent.as_ref().map(|_| pair) } else { measured.as_ref() };
             let (mut pressure, mut friction, mut turning) = (0.0, Vector::<3>::zeros(), Matrix::<3>::zeros());
             for (node, share) in &point.shares {
                 let lambda = contact.multiplier(*node as usize, self.own.multipliers);
@@ -123,7 +126,7 @@ impl Assembly<'_> {
                 out.residual[*unknown as usize] += pushes + rubbed;
                 out.sizes[*unknown as usize] += pushes.abs() + rubbed.abs();
             }
-            let Some(pair) = second else { continue };
+            let Some(pair) = linearised else { continue };
             let n = pair.unknowns.len();
             let place = block.places(&pair.unknowns);
             let bent = if rubs { pair.slip_hessian(&friction) } else { Vec::new() };
@@ -131,7 +134,7 @@ impl Assembly<'_> {
                 let turned = if rubs { turning.transpose() * pair.slip[a] } else { Vector::<3>::zeros() };
                 let row = &mut block.values[place[a] * size..(place[a] + 1) * size];
                 for b in 0..n {
-                    let mut value = -pressure * pair.d_opening[a * n + b];
+                    let mut value = pair.d_opening.get(a * n + b).map_or(0.0, |d| -pressure * d);
                     if rubs {
                         value += bent[a * n + b] + turned.dot(&pair.d_normal[b]);
                     }

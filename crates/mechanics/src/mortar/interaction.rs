@@ -3,6 +3,7 @@
 use super::force::Assembly;
 use super::measure::{Matched, NodeMeasure, Opposite, Sides};
 use super::shown::show;
+use super::small::{Measured, SmallSliding};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
@@ -35,13 +36,16 @@ const NEAREST: f64 = 1e-9;
 impl Mortar {
     fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64]) -> Result<Found<'a>, PlaceError> {
         let sides = Sides::new(self, at)?;
-        let cover = sides.cover(self);
-        let (pairs, lost) = self.pairs(&sides, &cover);
-        let separations = if self.friction.is_some() { self.separations(&sides) } else { Vec::new() };
+        let Measured { cover, pairs, separations, lost } = self.measured(&sides, at)?;
         let measures = self.measures(&cover, &pairs, &separations);
         let of = |(k, measure)| self.traction(k, measure, self.multiplier(k, multipliers));
         let projected = measures.iter().enumerate().map(of).collect();
         Ok(Found { sides, cover, pairs, separations, measures, projected, lost })
+    }
+
+    /// The nodes that see the master, with their measures.
+    fn seen<'a>(&'a self, found: &'a Found<'_>) -> impl Iterator<Item = (usize, &'a NodeMeasure)> {
+        found.measures.iter().enumerate().filter(|(k, m)| self.sees(*k, m.weight))
     }
 
     /// The nodes where they are in a state.
@@ -131,19 +135,20 @@ impl Interaction for Mortar {
         self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
     }
 
-    /// A body that only contact holds is pressed on it first where the gap is least: there what is out of balance is borne.
+    fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
+        let found = self.found(at, &self.remembered()).ok()?;
+        self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
+    }
+
+    /// A body that only contact holds is pressed on it first where the gap is least.
     fn guess(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
         let mut out = self.remembered();
         let Ok(found) = self.found(at, &out) else { return out };
-        let closest = found.measures.iter().enumerate().filter(|(k, m)| self.sees(*k, m.weight)).map(|(_, m)| m.gap);
-        let closest = closest.fold(f64::INFINITY, f64::min);
+        let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
         let near = NEAREST * at.bodies[self.slave.body].size();
         let force = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-        let components = self.components();
-        for (k, m) in found.measures.iter().enumerate() {
-            if self.sees(k, m.weight) && m.gap <= closest + near {
-                out[k * components] = 2.0 * self.stiffness[k] * m.gap.max(0.0) + force / m.weight;
-            }
+        for (k, m) in self.seen(&found).filter(|(_, m)| m.gap <= least + near) {
+            out[k * self.components()] = 2.0 * self.stiffness[k] * m.gap.max(0.0) + force / m.weight;
         }
         out
     }
@@ -153,6 +158,7 @@ impl Interaction for Mortar {
     }
 
     fn begin(&mut self, time: f64) {
+        self.small.iter_mut().for_each(SmallSliding::forget);
         self.times[1] = time;
     }
 
@@ -169,6 +175,7 @@ impl Interaction for Mortar {
     }
 
     fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
+        self.small.iter_mut().for_each(SmallSliding::forget);
         let Ok(sides) = Sides::new(self, at) else { return };
         for (k, (face, s)) in self.places.iter().enumerate() {
             let placed = sides.slave.placed(*face, s);
@@ -177,7 +184,7 @@ impl Interaction for Mortar {
             let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
             self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
         }
-        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.folded).weight;
+        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.search.facing, &self.folded).weight;
         self.weights = super::weights(&self.whole);
     }
 
@@ -262,6 +269,11 @@ impl Interaction for Mortar {
                 };
                 self.matched.push(Matched { face: point.face, s: point.s, on, shares: point.shares.clone() });
             }
+        }
+        let displacements = [&self.slave, &self.master].map(|part| at.side(part).1.configuration.clone());
+        if let Some(small) = &mut self.small {
+            small.forget();
+            small.since = displacements;
         }
         let turned = found.sides.turn();
         self.turned = turned;

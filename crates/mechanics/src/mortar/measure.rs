@@ -37,6 +37,7 @@ pub(super) enum Opposite<'a> {
 }
 
 /// What separates a matched pair now, with the unknowns that change it.
+#[derive(Clone)]
 pub(super) struct Separation {
     pub unknowns: Vec<u32>,
     pub normal: Vector<3>,
@@ -77,9 +78,9 @@ impl<'a> Sides<'a> {
     pub fn cover(&self, contact: &Mortar) -> Cover {
         match &self.master {
             Opposite::Surface(master) => {
-                contact.nodes.cut(self.slave.as_ref(), master.as_ref(), contact.search, &contact.folded)
+                contact.nodes.cut(self.slave.as_ref(), master.as_ref(), &contact.search, &contact.folded)
             }
-            Opposite::Rigid(_) => contact.nodes.whole(self.slave.as_ref(), &contact.folded),
+            Opposite::Rigid(_) => contact.nodes.whole(self.slave.as_ref(), &contact.search.facing, &contact.folded),
         }
     }
 

@@ -26,14 +26,17 @@ impl Mortar {
             own.push(m.shares.len() as f64);
             own.extend(m.shares.iter().flat_map(|(node, share)| [f64::from(*node), *share]));
         }
-        let scales = self.stiffness.iter().chain(&[self.times[0]]).chain(self.turned.iter()).copied().collect();
+        let since = self.small.iter().flat_map(|small| &small.since);
+        let since: Vec<f64> = since.flat_map(|u| std::iter::once(u.len() as f64).chain(u.iter().copied())).collect();
+        let scales =
+            self.stiffness.iter().chain(&[self.times[0]]).chain(self.turned.iter()).chain(&since).copied().collect();
         [own, scales]
     }
 
     /// Takes numbers that [`Mortar::numbers`] gave; none of something else.
     pub(super) fn take_numbers(&mut self, [own, scales]: &[Vec<f64>; 2]) -> Option<()> {
         let count = self.memory.len();
-        if scales.len() != count + 4 || own.len() < NUMBERS * count {
+        if scales.len() < count + 4 || own.len() < NUMBERS * count {
             return None;
         }
         let (nodes, mut rest) = own.split_at(NUMBERS * count);
@@ -59,7 +62,14 @@ impl Mortar {
         self.matched = matched;
         self.stiffness.copy_from_slice(&scales[..count]);
         self.times = [scales[count]; 2];
-        self.turned = Vector::<3>::from_column_slice(&scales[count + 1..]);
+        self.turned = Vector::<3>::from_column_slice(&scales[count + 1..count + 4]);
+        if let Some(small) = &mut self.small {
+            let (length, rest) = scales[count + 4..].split_first()?;
+            let (slave, rest) = rest.split_at_checked(*length as usize)?;
+            let (_, master) = rest.split_first()?;
+            small.since = [slave, master].map(<[f64]>::to_vec);
+            small.forget();
+        }
         Some(())
     }
 }

@@ -3,29 +3,10 @@
 use super::OutputError;
 use super::level::{region, surface};
 use super::page::ROUNDING;
-use super::solid_state::{Gap, bounds, spatial, tools};
+use super::solid_state::Gap;
 use super::vtk::to_bytes;
-use crate::plan::solid::SolidPlan;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::Vector;
 use vtkio::model::{DataSet, PolyDataPiece, VertexNumbers};
-
-/// What of a rigid body is written reaches beyond the solids by this part of their largest extent.
-const AROUND: f64 = 0.15;
-
-/// The names and VTP files of the rigid bodies of a plan at a time, around solids where they are now.
-///
-/// # Errors
-/// What `vtkio` cannot write.
-pub fn files<const D: usize>(
-    plan: &SolidPlan<D>,
-    time: f64,
-    now: impl Iterator<Item = Point<D>>,
-) -> Result<Vec<(String, Vec<u8>)>, OutputError> {
-    let [low, high] = bounds(now.map(|x| spatial(&x)).collect::<Vec<_>>().iter());
-    let pad = AROUND * (high - low).max();
-    let pad = Vector::<3>::from_fn(|k, _| if k < D { pad } else { 0.0 });
-    tools(plan, time).into_iter().map(|(name, gap)| Ok((name, file::<D>(&gap, [low - pad, high + pad])?))).collect()
-}
 
 #[doc(hidden)]
 pub fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {

@@ -1,8 +1,9 @@
 //! Bodies whose mesh falls into pieces that share no node.
 
-use signorini_fem::Mesh;
 use signorini_fem::mesh::position;
+use signorini_fem::{Group, Mesh};
 use signorini_geometry::Point;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// More pieces than this are counted, not listed.
 const LISTED: usize = 4;
@@ -72,5 +73,46 @@ impl<const D: usize> Apart<D> {
     /// The warning about pieces that lie on each other.
     pub fn warning(&self, body: &str) -> Option<String> {
         self.touching.map(|_| format!("{}; {UNITE}", self.text(body)))
+    }
+}
+
+/// The pieces of the mesh of a body, and which of them its groups reach.
+pub(crate) struct Pieces {
+    pub body: String,
+    /// Whether two of them lie on each other.
+    pub touch: bool,
+    /// What is told of each where nothing holds it.
+    told: Vec<String>,
+    of_group: BTreeMap<String, BTreeSet<u32>>,
+}
+
+impl Pieces {
+    /// None of a mesh that hangs together.
+    pub fn new<const D: usize>(body: &str, mesh: &Mesh<D>) -> Option<Self> {
+        let apart = Apart::new(mesh)?;
+        let mut of_vertex: BTreeMap<u32, u32> = BTreeMap::new();
+        for (cell, piece) in apart.of_cell.iter().enumerate() {
+            of_vertex.extend(mesh.vertices(cell).map(|v| (v, *piece)));
+        }
+        let reached = |group: &Group| {
+            let cells = group.cells.iter().copied().chain(group.sides.iter().map(|side| side.cell));
+            let vertices = group.vertices.iter().filter_map(|v| of_vertex.get(v).copied());
+            cells.map(|cell| apart.of_cell[cell as usize]).chain(vertices).collect()
+        };
+        let of_group = mesh.groups().iter().map(|(name, group)| (name.clone(), reached(group))).collect();
+        let told = (0..apart.count() as u32).map(|piece| apart.held_by_nothing(body, piece)).collect();
+        Some(Pieces { body: body.into(), touch: apart.touching.is_some(), told, of_group })
+    }
+
+    /// What is told of the first piece that none of these groups reaches; the whole body where there is no group.
+    pub fn loose<'a>(&self, groups: impl Iterator<Item = Option<&'a str>>) -> Option<&str> {
+        let mut reached = vec![false; self.told.len()];
+        for group in groups {
+            match group.map(|name| self.of_group.get(name)) {
+                Some(Some(pieces)) => pieces.iter().for_each(|piece| reached[*piece as usize] = true),
+                _ => reached.fill(true),
+            }
+        }
+        reached.iter().position(|reached| !reached).map(|piece| self.told[piece].as_str())
     }
 }

@@ -311,7 +311,7 @@ impl Model for MechanicsModel {
             accuracy::estimate(self, (result.unknowns, result.solved), &record.steps, &mut step, progress);
         }
         record.steps.push(step);
-        report::warn(&self.plan, &result, &shown, record);
+        report::warn(&self.plan, [&self.result, &result], &shown, record);
         self.last = Some(shown);
         self.result = result;
         if self.plan.head.pictures && self.plan.times.len() > 1 {

@@ -103,6 +103,7 @@ fn small_sliding_is_refused_where_bodies_slide_or_turn_far() {
         displacement = [0, "-0.001*min(t, 1)"]
         [contacts.brake]
         between = ["shoe:bottom", "drum"]
+        sliding = "small"
         friction.coulomb = { mu = 0.3 }
         [[steps]]
         to = 1
@@ -126,6 +127,7 @@ fn small_sliding_is_refused_where_bodies_slide_or_turn_far() {
         displacement = ["0.5*max(0, t - 1)", "-0.06*min(t, 1)"]
         [contacts.touch]
         between = ["shoe:bottom", "block:top"]
+        sliding = "small"
         friction.coulomb = { mu = 0.2 }
         [[steps]]
         to = 1

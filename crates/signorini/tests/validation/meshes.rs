@@ -431,6 +431,6 @@ fn supports_that_contradict_later_are_refused_at_once() {
     let problem = signorini::case::read("case.toml", &text, &[]).expect("a case");
     let out = folder.path().join("out");
     let refused = signorini::run::run(&problem, &out, &mut signorini_solve::Silent).err().expect("an error");
-    assert!(refused.to_string().contains("prescribe different displacements"), "{refused}");
+    assert!(refused.to_string().contains("contradict each other on `a`"), "{refused}");
     assert!(!out.exists());
 }

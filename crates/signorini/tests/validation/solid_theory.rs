@@ -25,7 +25,7 @@ fn hertz_between_elastic_bodies() {
              [supports.base]\non = \"block:bottom\"\nnormal = 0\n\
              [supports.head]\non = \"ball:top\"\ndisplacement = [\"free\", \"free\"]\nuniform = true\n\
              [loads.press]\non = \"ball:top\"\nforce = [0, -500]\n\
-             [contacts.touch]\nbetween = [\"ball:bottom\", \"block:top\"]\n",
+             [contacts.touch]\nbetween = [\"ball:bottom\", \"block:top\"]\nsliding = \"small\"\n",
             half = n / 2,
             shrink = 1.0 / growth,
         );

@@ -28,13 +28,15 @@ pub(super) struct Face<const D: usize> {
 }
 
 /// A tested point with what moves it.
-struct TestedPoint<const D: usize> {
+pub(super) struct TestedPoint<const D: usize> {
     x: Point<D>,
     functions: Vec<(u32, f64)>,
     around: Vec<Tangents<D>>,
     /// What the averaged normal is the sum of.
     averaged: Vec<(f64, Tangents<D>)>,
     depth: f64,
+    /// The traction by the stress there in each unknown, once it is asked for.
+    pub(super) traction: OnceLock<Vec<(u32, Point<D>)>>,
 }
 
 /// The tangents of a face at a tested point, and how functions move them.
@@ -138,7 +140,7 @@ impl<const D: usize> Faces<D> {
     }
 
     /// The tested point that a site is.
-    fn point(&self, site: &Site) -> &TestedPoint<D> {
+    pub(super) fn point(&self, site: &Site) -> &TestedPoint<D> {
         let number = site.patch;
         let surface = &self.surfaces[self.surfaces.partition_point(|s| s.nodes.numbers.start <= number) - 1];
         let (sampling, first) = match number < surface.gauss_points.numbers.start {
@@ -171,7 +173,8 @@ impl<const D: usize> Faces<D> {
         let averaged = self.averaged(surface, place, &s);
         let around: Vec<Tangents<D>> = at.iter().map(|(face, s)| self.tangents(*face, s)).collect();
         let depth = at.iter().map(|(f, _)| self.face(*f).depth).fold(f64::INFINITY, f64::min);
-        let point = TestedPoint { x: self.reference(face, &s).x, functions, around, averaged, depth };
+        let x = self.reference(face, &s).x;
+        let point = TestedPoint { x, functions, around, averaged, depth, traction: OnceLock::new() };
         (Site { patch, xi: [s[0], s[1]], weight }, point)
     }
 

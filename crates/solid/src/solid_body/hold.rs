@@ -1,8 +1,8 @@
 //! What supports hold: functions on a place, at the values that fit a prescribed displacement best.
 
+use super::projection::{functions, project};
 use super::{SolidBody, spatial};
 use crate::body::Bodies;
-use crate::supports::{Support, SupportKind, functions, project};
 use signorini_fem::Group;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::pair::axis;
@@ -23,8 +23,7 @@ impl<const D: usize> SolidBody<D> {
             Some(_) => self.group(on)?.clone(),
             None => Group { cells: (0..body.mesh.cell_count() as u32).collect(), ..Group::default() },
         };
-        let support = Support { name: String::new(), body: 0, group, kind: SupportKind::Components(vec![true; D]) };
-        let all = functions(&self.bodies, &support);
+        let all = functions(body, &group);
         if all.is_empty() {
             return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
         }
@@ -32,7 +31,7 @@ impl<const D: usize> SolidBody<D> {
             let x = spatial(x);
             Point::<D>::from_fn(|i, _| hold.displacement[i].map_or(0.0, |field| field(&x)))
         };
-        let wanted = project(&self.bodies, &support, &wanted);
+        let wanted = project(body, &group, &wanted);
         let mut is_vertex = vec![false; body.dofs.count()];
         body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
         // The functions of the vertices add up to one: forces on them make the resultant.
@@ -49,7 +48,7 @@ impl<const D: usize> SolidBody<D> {
         }
         if let Some((n, field)) = &hold.along {
             let direction = Point::<D>::from_fn(|i, _| n[i]);
-            let wanted = project(&self.bodies, &support, &|x| direction * field(&spatial(x)));
+            let wanted = project(body, &group, &|x| direction * field(&spatial(x)));
             for &f in &all {
                 let own = |i: usize| (D as u32 * f + i as u32, n[i]);
                 let terms: Vec<(u32, f64)> = (0..D).map(own).filter(|t| t.1 != 0.0).collect();
@@ -86,9 +85,7 @@ pub(super) fn position<const D: usize>(bodies: &Bodies<D>) -> Vec<Point<D>> {
     let curved = (0..body.mesh.cell_count()).any(|c| body.mesh.map(c).order() > 1);
     if curved && body.degree > 1 {
         let group = Group { sides: body.mesh.all_sides().collect(), ..Group::default() };
-        let kind = SupportKind::Components(vec![true; D]);
-        let whole = Support { name: String::new(), body: 0, group, kind };
-        for (f, x) in project(bodies, &whole, &|x| *x) {
+        for (f, x) in project(body, &group, &|x| *x) {
             out[f as usize] = x;
         }
     }

@@ -1,10 +1,13 @@
 //! The pressure that is shown, against exact ones, on cells whose functions have no integral: vertices of quadratic
 //! triangles, and the axis of a body of revolution.
 
+use crate::pressed::{MORTAR, NITSCHE, NODE, PENALTY, Way, pressed};
 use signorini_fem::block::block;
 use signorini_fem::{CellShape, Mesh, Side};
-use signorini_geometry::Point;
-use signorini_solid::*;
+use signorini_geometry::rigid_shape::{Plane, Sphere};
+use signorini_geometry::{Point, Vector};
+use signorini_mechanics::SiteResult;
+use signorini_solid::{Elastic, Space};
 
 const E: f64 = 1000.0;
 const NU: f64 = 0.3;
@@ -54,50 +57,30 @@ fn tetrahedra(of: &Mesh<3>) -> Mesh<3> {
     out
 }
 
-/// A body on the rigid plane `x_up = 0`, with its displacement prescribed where `held` says: group and components.
+/// The nodes of a body on a rigid plane under its bottom: positions at rest, and pressures.
 fn on_a_plane<const D: usize>(
     mesh: Mesh<D>,
     space: Space,
     degree: usize,
-    (method, enforcement): (Method, Enforcement),
-    held: &[(&str, Vec<bool>)],
-    displacement: &(dyn Fn(&Point<D>) -> Point<D> + Sync),
-) -> State<D> {
-    let groups = mesh.groups().clone();
-    let mut bodies = Bodies::<D>::new(space);
-    bodies.add("block", mesh, degree, MATERIAL);
-    let supports = (held.iter())
-        .map(|(group, which)| Support {
-            name: group.to_string(),
-            body: 0,
-            group: groups[*group].clone(),
-            kind: SupportKind::Components(which.clone()),
-        })
-        .collect();
-    let slave = bodies.surface(0, groups["bottom"].sides.clone());
-    let mut contact = Contact::new("touch", slave, Master::Rigid);
-    (contact.method, contact.enforcement) = (method, enforcement);
-    let mut model = Model::new(bodies, supports, vec![contact]).unwrap();
-    let up = Point::<D>::from_fn(|k, _| f64::from(u8::from(k == D - 1)));
-    let now = Circumstances {
-        displacement: &|_, x| displacement(x),
-        load: vec![0.0; model.bodies.unknowns()],
-        rigid: vec![Some(Box::new(move |x: &Point<D>| signorini_contact::GapJet::flat(x.dot(&up), up)))],
-        motion: vec![],
-    };
-    model.solve(&now, &mut |_, _| true).unwrap()
+    way: Way,
+    held: &[(&str, [bool; 3])],
+    (displacement, parameters): (fn(&Point<3>, &[f64]) -> Point<3>, &[f64]),
+) -> Vec<SiteResult> {
+    let plane = Plane { point: Point::<3>::zeros(), normal: Vector::<3>::ith(D - 1, 1.0) };
+    pressed(mesh, space, (degree, MATERIAL), way, held, displacement, (parameters, plane))
 }
 
-const MORTAR: (Method, Enforcement) = (Method::Mortar, Enforcement::Multiplier);
-const NODE: (Method, Enforcement) = (Method::Node, Enforcement::Multiplier);
-const NITSCHE: (Method, Enforcement) = (Method::Mortar, Enforcement::Nitsche);
-const AT_POINTS: (Method, Enforcement) = (Method::GaussPoint, Enforcement::Nitsche);
+/// Where a point was at rest that an exact displacement brought to `x`.
+fn at_rest(x: Point<3>, displacement: impl Fn(&Point<3>) -> Point<3>) -> Point<3> {
+    (0..60).fold(x, |at, _| x - displacement(&at))
+}
 
 /// Bending: `σ_zz = -(p + q x)`, no other stress. Quadratic functions hold it.
-fn bent(way: (Method, Enforcement), tets: bool, p: f64, q: f64) -> f64 {
+fn bent(way: Way, tets: bool, p: f64, q: f64) -> f64 {
     let mesh = block::<3>(&[even(0.0, 1.0, 2), even(0.0, 1.0, 2), even(0.0, 1.0, 1)], 2, |x| x);
     let mesh = if tets { tetrahedra(&mesh) } else { mesh };
-    let exact = move |x: &Point<3>| {
+    let exact = |x: &Point<3>, of: &[f64]| {
+        let (p, q) = (of[0], of[1]);
         let s = -(p + q * x[0]);
         Point::<3>::new(
             NU / E * (p * x[0] + 0.5 * q * (x[0] * x[0] - x[1] * x[1])) + 0.5 * q / E * x[2] * x[2],
@@ -105,52 +88,51 @@ fn bent(way: (Method, Enforcement), tets: bool, p: f64, q: f64) -> f64 {
             s / E * x[2],
         )
     };
-    let held = [("top", vec![true; 3])];
-    let state = on_a_plane(mesh, Space::Solid, 2, way, &held, &exact);
-    let nodes = &state.contacts[0].nodes;
-    assert_eq!(nodes.len(), 25);
-    nodes.iter().map(|n| (n.pressure / (p + q * n.x[0]) - 1.0).abs()).fold(0.0, f64::max)
+    let sites = on_a_plane(mesh, Space::Solid, 2, way, &[("top", [true; 3])], (exact, &[p, q]));
+    let error = |n: &SiteResult| (n.shown_pressure() / (p + q * at_rest(n.x, |x| exact(x, &[p, q]))[0]) - 1.0).abs();
+    sites.iter().filter(|n| n.weight > 0.0).map(error).fold(0.0, f64::max)
 }
 
 #[test]
 fn even_and_linear_pressures_on_quadratic_faces_are_exact() {
     for tets in [false, true] {
-        for way in [MORTAR, NODE, NITSCHE, AT_POINTS] {
-            let worst = bent(way, tets, 10.0, 0.0);
-            assert!(worst < 1e-9, "{way:?} {tets}: {worst:e}");
+        for q in [0.0, 5.0] {
+            let worst = bent(MORTAR, tets, 10.0, q);
+            assert!(worst < 1e-9, "{tets}: {worst:e}");
         }
-        for way in [MORTAR, NITSCHE, AT_POINTS] {
-            let worst = bent(way, tets, 10.0, 5.0);
-            assert!(worst < 1e-9, "{way:?} {tets}: {worst:e}");
-        }
+    }
+    // By the stress at points.
+    for q in [0.0, 5.0] {
+        let worst = bent(NITSCHE, false, 10.0, q);
+        assert!(worst < 1e-9, "{worst:e}");
     }
 }
 
 /// The largest error within half the radius of `p = 2μ (2A - 6B r²)`, the state of `φ = A (z² - r²/2) + B (z⁴ - 3 z² r² +
 /// 3/8 r⁴)` (Green & Zerna 1954: `u_r = (1-2ν) φ_r + z φ_rz`, `u_z = -2(1-ν) φ_z + z φ_zz`), relative to that on the axis.
-fn round(way: (Method, Enforcement), degree: usize, n: usize, b: f64) -> f64 {
+fn round(way: Way, degree: usize, n: usize, b: f64) -> f64 {
     const A: f64 = 0.01;
     let mesh = block::<2>(&[even(0.0, 1.0, n), even(0.0, 1.0, n)], 1, |x| x);
-    let exact = move |x: &Point<2>| {
-        let (r, z) = (x[0], x[1]);
+    let exact = |x: &Point<3>, of: &[f64]| {
+        let (r, z, b) = (x[0], x[1], of[0]);
         let slope_r = -A * r + b * (-6.0 * z * z * r + 1.5 * r.powi(3));
         let slope_z = 2.0 * A * z + b * (4.0 * z.powi(3) - 6.0 * z * r * r);
         let curved = 2.0 * A + b * (12.0 * z * z - 6.0 * r * r);
-        Point::<2>::new((1.0 - 2.0 * NU) * slope_r - 12.0 * b * z * z * r, -2.0 * (1.0 - NU) * slope_z + z * curved)
+        let radial = (1.0 - 2.0 * NU) * slope_r - 12.0 * b * z * z * r;
+        Point::<3>::new(radial, -2.0 * (1.0 - NU) * slope_z + z * curved, 0.0)
     };
-    let held = [("top", vec![true; 2]), ("right", vec![true; 2]), ("left", vec![true, false])];
-    let state = on_a_plane(mesh, Space::Axisymmetric, degree, way, &held, &exact);
+    let held = [("top", [true, true, false]), ("right", [true, true, false]), ("left", [true, false, false])];
+    let sites = on_a_plane(mesh, Space::Axisymmetric, degree, way, &held, (exact, &[b]));
     let pressure = |r: f64| E / (1.0 + NU) * (2.0 * A - 6.0 * b * r * r);
-    let error = |n: &PressureNode<2>| (n.pressure - pressure(n.x[0])).abs() / pressure(0.0);
-    let nodes = || state.contacts[0].nodes.iter().filter(|n| n.x[0] < 0.5);
-    assert_eq!(nodes().filter(|n| n.x[0] < 1e-12).count(), 1);
-    nodes().map(error).fold(0.0, f64::max)
+    let error = |(r, p): (f64, f64)| (p - pressure(r)).abs() / pressure(0.0);
+    let list = sites.iter().map(|n| (at_rest(n.x, |x| exact(x, &[b]))[0], n.shown_pressure()));
+    list.filter(|n| n.0 < 0.5).map(error).fold(0.0, f64::max)
 }
 
 #[test]
 fn pressures_at_the_axis_are_right_for_every_degree() {
     for degree in 1..=5 {
-        for way in [MORTAR, NODE, NITSCHE, AT_POINTS] {
+        for way in [MORTAR, NITSCHE] {
             let worst = round(way, degree, 2, 0.0);
             assert!(worst < 1e-9, "even, {way:?}, degree {degree}: {worst:e}");
             if degree > 3 {
@@ -164,7 +146,7 @@ fn pressures_at_the_axis_are_right_for_every_degree() {
 /// With linear functions but for the logarithm of the cell size; with the plain mean of the slope it is order 1.
 #[test]
 fn pressures_at_the_axis_are_of_second_order() {
-    for way in [MORTAR, NODE, NITSCHE, AT_POINTS] {
+    for way in [MORTAR, NITSCHE] {
         for degree in [1, 2] {
             let [coarse, fine] = [16, 32].map(|n| round(way, degree, n, 0.002));
             let order = (coarse / fine).log2();
@@ -184,33 +166,13 @@ fn areas_on_quadratic_triangles() {
         Point::<3>::new(a, b, x[2] + (a * a + b * b) / 20.0)
     };
     let mesh = tetrahedra(&block::<3>(&[axis.clone(), axis, even(0.0, 3.0, 5)], 2, bent));
-    let groups = mesh.groups().clone();
-    let areas = [Method::Mortar, Method::Node, Method::GaussPoint].map(|method| {
-        let mut bodies = Bodies::<3>::new(Space::Solid);
-        bodies.add("block", mesh.clone(), 2, Elastic { youngs_modulus: 1.0, poissons_ratio: NU });
+    let areas = [MORTAR, NODE, PENALTY].map(|way| {
         let held = [("top", [true; 3]), ("left", [true, false, false]), ("front", [false, true, false])];
-        let supports = held.map(|(group, which)| Support {
-            name: group.into(),
-            body: 0,
-            group: groups[group].clone(),
-            kind: SupportKind::Components(which.to_vec()),
-        });
-        let slave = bodies.surface(0, groups["bottom"].sides.clone());
-        let mut contact = Contact::new("touch", slave, Master::Rigid);
-        contact.method = method;
-        if method == Method::GaussPoint {
-            contact.enforcement = Enforcement::Penalty { wanted_penetration: None };
-        }
-        let mut model = Model::new(bodies, supports.to_vec(), vec![contact]).unwrap();
-        let centre = Point::<3>::new(0.0, 0.0, -100.0);
-        let now = Circumstances {
-            displacement: &|s, _| Point::<3>::new(0.0, 0.0, if s == 0 { -0.0935 } else { 0.0 }),
-            load: vec![0.0; model.bodies.unknowns()],
-            rigid: vec![Some(Box::new(move |x: &Point<3>| signorini_contact::GapJet::ball(x, &centre, 100.0)))],
-            motion: vec![],
-        };
-        let state = model.solve(&now, &mut |_, _| true).unwrap();
-        state.contacts[0].area
+        let ball = Sphere { center: Point::<3>::new(0.0, 0.0, -100.0), radius: 100.0 };
+        let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: NU };
+        let down = |x: &Point<3>, _: &[f64]| Point::<3>::new(0.0, 0.0, if x[2] > 2.9 { -0.0935 } else { 0.0 });
+        let sites = pressed(mesh.clone(), Space::Solid, (2, elastic), way, &held, down, (&[], ball));
+        sites.iter().map(SiteResult::contact_area).sum::<f64>()
     });
     // They differ by 7 %, the contact being three cells wide.
     assert!(areas.iter().all(|a| (a / areas[0] - 1.0).abs() < 0.1), "{areas:?}");

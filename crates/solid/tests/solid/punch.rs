@@ -1,7 +1,11 @@
 //! A stiff flat punch on an elastic block: `p = P / (π √(a² - x²))` on a half plane (Sadowsky 1928).
 
+use crate::system::{force, hold, load, part, run, solid};
 use signorini_fem::block::{block, graded};
-use signorini_solid::*;
+use signorini_geometry::Vector;
+use signorini_mechanics::*;
+use signorini_solid::{Elastic, StressLaw};
+use std::sync::Arc;
 
 fn stretches(from: f64, list: &[(f64, usize, f64)]) -> Vec<f64> {
     let mut out = vec![from];
@@ -23,37 +27,29 @@ fn the_edge_is_singular_like_an_inverse_root() {
         |x| x,
     );
     let punch = block::<2>(&[stretches(0.0, &[(1.0, 24, 0.8)]), stretches(0.0, &[(1.0, 8, 1.4)])], 1, |x| x);
-    let groups = [below.groups().clone(), punch.groups().clone()];
-    let mut bodies = Bodies::<2>::new(Space::PlaneStrain);
-    bodies.add("block", below, 2, Elastic { youngs_modulus: 1000.0, poissons_ratio: 0.3 });
-    bodies.add("punch", punch, 2, Elastic { youngs_modulus: 1e7, poissons_ratio: 0.3 });
-    let support =
-        |body: usize, group: &str, kind| Support { name: group.into(), body, group: groups[body][group].clone(), kind };
-    let supports = vec![
-        support(0, "bottom", SupportKind::Normal),
-        support(0, "left", SupportKind::Normal),
-        support(1, "left", SupportKind::Normal),
-        support(1, "top", SupportKind::Uniform(vec![true, true])),
-    ];
-    let press = Load { name: "press".into(), body: 1, group: groups[1]["top"].clone(), kind: LoadKind::Force };
-    let load = loads::forces(&bodies, &press, &|_| signorini_geometry::Point::<2>::new(0.0, -10.0));
-    let slave = bodies.surface(1, groups[1]["bottom"].sides.clone());
-    let master = bodies.surface(0, groups[0]["top"].sides.clone());
-    let mut model = Model::new(bodies, supports, vec![Contact::new("touch", slave, Master::Surface(master))]).unwrap();
-    assert_eq!(model.free_modes().len(), 1, "the punch falls until the block holds it");
-    let now = Circumstances {
-        displacement: &|_, _| signorini_geometry::Point::<2>::zeros(),
-        load,
-        rigid: vec![None],
-        motion: vec![],
-    };
-    let state = model.solve(&now, &mut |_, _| true).unwrap();
-    let contact = &state.contacts[0];
-    assert!((contact.force[1] / 10.0 - 1.0).abs() < 1e-7);
+    let mut system = System::default();
+    for (name, mesh, youngs_modulus) in [("block", below, 1000.0), ("punch", punch, 1e7)] {
+        let elastic = Elastic { youngs_modulus, poissons_ratio: 0.3 };
+        system.bodies.push(Box::new(solid(name, mesh, 2, elastic, StressLaw::LinearElastic)));
+    }
+    let zero = Some(0.0);
+    system.supports.extend([hold(0, "bottom", [None, zero, None]), hold(0, "left", [zero, None, None])]);
+    system.supports.push(hold(1, "left", [zero, None, None]));
+    let uniform = [true, true, false];
+    system.supports.push(Support { name: "head".into(), part: part(1, "top"), uniform, ..Support::default() });
+    system.loads.push(load(1, "top", TimedLoad::Force(Arc::new(|_, _| Vector::<3>::new(0.0, -10.0, 0.0)))));
+    let of = |(body, group): (usize, &str)| (part(body, group), system.bodies[body].as_ref());
+    let mut contact = Mortar::new("touch", of((1, "bottom")), of((0, "top")), Enforcement::Multiplier).unwrap();
+    contact.slides_little();
+    system.contacts.push(Box::new(contact));
+    assert_eq!(system.free_motion(1).unwrap().as_deref(), Some("moving along y"), "the punch falls until the block holds it");
+    let (_, results) = run(&mut system, &[1.0]);
+    let nodes: Vec<(f64, f64)> = results[0].sites[0].iter().map(|s| (s.x[0], s.shown_pressure())).collect();
+    assert!((force(&results[0], 0)[1] / 10.0 - 1.0).abs() < 1e-7);
     let exponent = |from: f64, to: f64| {
-        let points: Vec<(f64, f64)> = (contact.nodes.iter())
-            .filter(|n| n.x[0] >= from && n.x[0] <= to)
-            .map(|n| ((1.0 - n.x[0] * n.x[0]).ln(), n.pressure.ln()))
+        let points: Vec<(f64, f64)> = (nodes.iter())
+            .filter(|n| n.0 >= from && n.0 <= to)
+            .map(|(x, p)| ((1.0 - x * x).ln(), p.ln()))
             .collect();
         let count = points.len() as f64;
         let (mx, my) =
@@ -66,9 +62,8 @@ fn the_edge_is_singular_like_an_inverse_root() {
         assert!((found / -0.5 - 1.0).abs() < 0.05, "{from} to {to}: {found}");
     }
     // Away from the edge the pressure is that of the half plane but for the finite block.
-    let middle = contact.nodes.iter().filter(|n| n.x[0] < 0.6);
-    for node in middle {
-        let exact = 20.0 / std::f64::consts::PI / (1.0 - node.x[0] * node.x[0]).sqrt();
-        assert!((node.pressure / exact - 1.0).abs() < 0.02, "{} at {}", node.pressure, node.x[0]);
+    for (x, pressure) in nodes.iter().filter(|n| n.0 < 0.6) {
+        let exact = 20.0 / std::f64::consts::PI / (1.0 - x * x).sqrt();
+        assert!((pressure / exact - 1.0).abs() < 0.02, "{pressure} at {x}");
     }
 }

@@ -13,9 +13,6 @@ use signorini_mechanics::{
 };
 use signorini_rope::curve_pair::{CurveContact, Form};
 
-/// The methods of linear solids of small strain, together.
-pub(in crate::plan) const SMALL_STRAIN: &str = "small_strain";
-
 impl Planner<'_> {
     pub(super) fn system_contacts(
         &self,
@@ -63,6 +60,7 @@ impl Planner<'_> {
             };
             for (name, pair) in pairs {
                 let (contact, tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
+                self.check_sliding(key, &tested, contact.parts(), (system, kinds))?;
                 out.push(contact);
                 told.push(tested);
             }
@@ -132,7 +130,8 @@ impl Planner<'_> {
         // Lines of load have penalties.
         let by_stress = !matches!(kinds[master.body], Kind::Curve { .. });
         let is_rigid = body(&slave).is_rigid();
-        let (sampling, enforcement, method) = self.system_method(key, (is_rigid, by_stress), straight, kind)?;
+        let (sampling, enforcement, method) =
+            self.system_method(key, (is_rigid, by_stress), (straight, body(&slave).is_linear()), kind)?;
         if sampling == Sampling::GaussPoints {
             test_densely(&mut system.bodies, [&slave, &master]);
         }
@@ -309,14 +308,19 @@ impl Planner<'_> {
             Some(Enforcement::Multiplier(_)) => Kept::Multiplier,
             Some(Enforcement::AugmentedLagrangian(_)) => Kept::AugmentedLagrangian,
             Some(Enforcement::Penalty(k)) => Kept::Penalty { wanted_penetration: self.wanted_penetration(k)? },
-            Some(Enforcement::Nitsche(_)) if ["cell_surface", SMALL_STRAIN].contains(&method) => Kept::Nitsche,
+            Some(Enforcement::Nitsche(_)) if method == "cell_surface" => Kept::Nitsche,
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem
-                    .error(nitsche, "Nitsche's method is for solids with small strain and for finite cells")
+                    .error(nitsche, "Nitsche's method is by mortar or at quadrature points of solids with small strain, and for finite cells")
                     .help("enforcement.multiplier = {}"));
             }
         })
+    }
+
+    /// The penetration that a penalty may leave; none where it is left to the program.
+    fn wanted_penetration(&self, key: &problem::Penalty) -> Result<Option<f64>, CaseError> {
+        key.wanted_penetration.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose()
     }
 
     /// Where contact is tested, how it is kept, and the method in a word.
@@ -324,12 +328,21 @@ impl Planner<'_> {
         &self,
         key: &problem::Contact,
         (rigid, by_stress): (bool, bool),
-        straight: bool,
+        (straight, knows_stress): (bool, bool),
         kind: &Kind,
     ) -> Result<(Sampling, Kept, &'static str), CaseError> {
         let problem = self.problem;
         // Straight elements meet at nodes, which carry for them.
         let of_curve = if rigid || straight { Sampling::Nodes } else { Sampling::GaussPoints };
+        if let (Kind::Solid, Some(Method::Mortar(k) | Method::GaussPoint(k))) = (kind, &key.method)
+            && let Some(nitsche @ Enforcement::Nitsche(_)) = &k.enforcement
+        {
+            if !knows_stress {
+                let message = "Nitsche's method is for solids with small strain and for finite cells";
+                return Err(problem.error(nitsche, message).help("enforcement.multiplier = {}"));
+            }
+            return Ok((Sampling::GaussPoints, Kept::Nitsche, "gauss_point"));
+        }
         let (sampling, word, stated) = match &key.method {
             None => match kind {
                 Kind::Solid => (of_curve, "gauss_point", None),

@@ -11,22 +11,24 @@ mod rigid;
 mod solids;
 mod winches;
 
-pub(in crate::plan) use contacts::is_tangent;
 pub use fields::Wrong;
 
 use super::head::Head;
 use super::memory::check_memory;
+use super::pieces::{Pieces, UNITE};
 use super::planner::Planner;
-use crate::problem::units::LENGTH;
+use crate::problem::units::{LENGTH, Units};
 use crate::problem::{self, Body, CaseError, Motion, Problem, Space, UnstableStates};
 use crate::report::{Carried, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
-use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System, Unstable};
+use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System, TimedLoad, Unstable};
 use signorini_rope::curve_pair::search::{Between, Searched, crossings};
+use solids::PlannedSolid;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// What a body of the system is, for results and pictures.
@@ -57,6 +59,8 @@ pub struct Tested {
     pub along_a_curve: bool,
     /// What the first body carries.
     pub carries: Carried,
+    /// Whether sliding is small by choice: gaps and slips are linear in the displacements.
+    pub slides_little: bool,
     /// Whether it is kept at single nodes of a surface that has none by nature.
     pub at_nodes: bool,
     /// What was found out about it.
@@ -68,7 +72,8 @@ impl Tested {
     /// By a method, at points in no order, with nothing to say of it.
     fn by(method: &'static str, axis: AxisChoice) -> Self {
         let carries = Carried::Pressure;
-        Tested { method, axis, along_a_curve: false, carries, at_nodes: false, notes: Vec::new(), warnings: Vec::new() }
+        let (notes, warnings) = (Vec::new(), Vec::new());
+        Tested { method, axis, along_a_curve: false, carries, slides_little: false, at_nodes: false, notes, warnings }
     }
 }
 
@@ -131,7 +136,9 @@ impl Planner<'_> {
         let mut warnings = Vec::new();
         let mut notes = Vec::new();
         let mut axis = Vec::new();
+        let mut pieces = Vec::new();
         let mut numbers = Numbers::new();
+        let mut boxes: Vec<(&str, [Point<3>; 2])> = Vec::new();
         // Rigid shapes given by heights are known around the bodies that are there.
         let mut around: Option<[Point<3>; 2]> = None;
         for (name, body) in &problem.bodies {
@@ -141,7 +148,8 @@ impl Planner<'_> {
                 }
                 Body::Beam(beam) => self.beam(name, beam).map(|(body, radius)| (body, Kind::Curve { radius }))?,
                 Body::Solid(solid) => {
-                    let (body, on_axis) = self.system_solid(name, solid, &mut warnings)?;
+                    let PlannedSolid { body, on_axis, pieces: own } = self.system_solid(name, solid, &mut warnings)?;
+                    pieces.extend(own);
                     if on_axis {
                         let part = Part { body: system.bodies.len(), group: Some(solids::AXIS.to_string()) };
                         let zero: TimeField = Arc::new(|_, _| 0.0);
@@ -165,9 +173,13 @@ impl Planner<'_> {
                 }
             };
             let shown = deformable.fields(&deformable.start());
-            for x in &shown.points {
-                let [low, high] = around.unwrap_or([*x; 2]);
-                around = Some([low.inf(x), high.sup(x)]);
+            let join = |found: Option<[Point<3>; 2]>, x: &Point<3>| {
+                let [low, high] = found.unwrap_or([*x; 2]);
+                Some([low.inf(x), high.sup(x)])
+            };
+            around = shown.points.iter().fold(around, join);
+            if let Some(corners) = shown.points.iter().fold(None, join) {
+                boxes.push((name.as_str(), corners));
             }
             numbers.insert(name.clone(), system.bodies.len());
             system.bodies.push(deformable);
@@ -188,7 +200,15 @@ impl Planner<'_> {
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
         system.prepare().map_err(|e| self.unprepared(&e))?;
+        self.check_pieces(&pieces, &system)?;
         self.check_held(&system)?;
+        let times = self.times()?;
+        for time in &times {
+            system.check_supports(*time).map_err(|e| self.unprepared(&e.into()))?;
+        }
+        if let Some(error) = wrong.take(problem) {
+            return Err(error);
+        }
         self.check_start(&system, &kinds, &contacts, &mut warnings)?;
         self.check_inside(&system)?;
         self.check_crossings(&system, &kinds, &contacts)?;
@@ -206,14 +226,19 @@ impl Planner<'_> {
         }
         let mut probes = BTreeMap::new();
         for (name, at) in &problem.output.probes {
-            probes.insert(name.clone(), self.position(at, LENGTH)?);
+            let x = self.position(at, LENGTH)?;
+            warnings.extend(outside(name, &x, &boxes).map(Warning::from));
+            probes.insert(name.clone(), x);
+        }
+        if let Some(units) = self.reader.units {
+            warnings.extend(odd_sizes(problem, units, &boxes));
         }
         Ok(MechanicsPlan {
             head: self.head(warnings)?,
             space: self.space,
             system,
             kinds,
-            times: self.times()?,
+            times,
             probes,
             moments_about: match &problem.output.moments_about {
                 Some(at) => self.position(at, LENGTH)?,
@@ -239,6 +264,27 @@ impl Planner<'_> {
                 return Err(problem
                     .error(&problem.space, format!("the body `{name}` is not possible in this space"))
                     .help("ropes and beams require  space = \"3d\""));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether something holds each piece of a mesh that does not hang together: supports or contacts; of pieces that lie on each
+    /// other, which should be one, supports.
+    fn check_pieces(&self, pieces: &[Pieces], system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        for own in pieces {
+            let of_body = |part: &Part| system.bodies[part.body].name() == own.body;
+            let supports = system.supports.iter().map(|support| &support.part);
+            let springs = system.loads.iter().filter(|l| matches!(l.load, TimedLoad::Springs(_))).map(|l| &l.part);
+            let contacts = system.contacts.iter().filter(|_| !own.touch).flat_map(|contact| contact.parts());
+            let parts = supports.chain(springs).chain(contacts).filter(|part| of_body(part));
+            if let Some(told) = own.loose(parts.map(|part| part.group.as_deref())) {
+                let place = match problem.bodies.get(&own.body) {
+                    Some(Body::Solid(solid)) => self.key(&solid.mesh),
+                    _ => self.key(&problem.space),
+                };
+                return Err(problem.error(&place, told).help(UNITE));
             }
         }
         Ok(())
@@ -410,3 +456,48 @@ impl Planner<'_> {
         Ok(Point::<3>::new(x, y, 0.0))
     }
 }
+
+/// Lengths in metres and Young's moduli in pascals beyond these look wrong.
+const LENGTHS: RangeInclusive<f64> = 1e-9..=1e5;
+const MODULI: RangeInclusive<f64> = 1e1..=3e12;
+
+/// What is odd about sizes and stiffness of solids.
+fn odd_sizes(problem: &Problem, units: Units, boxes: &[(&str, [Point<3>; 2])]) -> Vec<Warning> {
+    let mut out = Vec::new();
+    for (name, [low, high]) in boxes {
+        let Some(Body::Solid(_)) = problem.bodies.get(*name) else { continue };
+        out.extend(odd_length(units, (high - low).max(), &format!("`{name}`")).map(Warning::from));
+    }
+    out
+}
+
+/// What is odd about the size of a body.
+pub(crate) fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
+    let metres = length * units.length;
+    (!LENGTHS.contains(&metres)).then(|| format!("{what} is {metres:.1e} m long; check the units"))
+}
+
+/// What is odd about the stiffness of a body.
+pub(super) fn odd_modulus(units: Units, youngs_modulus: f64, body: &str) -> Option<String> {
+    let pascals = youngs_modulus * units.force / units.length.powi(2);
+    let than = if pascals < *MODULI.start() { "softer than" } else { "stiffer than" };
+    let told = || format!("the modulus of `{body}` is {pascals:.1e} Pa, {than} any solid; check the units");
+    (!MODULI.contains(&pascals)).then(told)
+}
+
+/// What is told of a probe outside of all bodies.
+fn outside(name: &str, x: &Point<3>, boxes: &[(&str, [Point<3>; 2])]) -> Option<String> {
+    let away = |[low, high]: &[Point<3>; 2]| (low - x).sup(&(x - high)).sup(&Point::<3>::zeros()).norm();
+    let (body, corners) = boxes.iter().min_by(|a, b| away(&a.1).total_cmp(&away(&b.1)))?;
+    let size = (corners[1] - corners[0]).norm();
+    let at: Vec<String> = x.iter().map(f64::to_string).collect();
+    (away(corners) > NEAR * size).then(|| {
+        format!(
+            "the probe `{name}` at ({}) lies outside all bodies: the nearest point of `{body}` is used",
+            at.join(", ")
+        )
+    })
+}
+
+/// Part of the size of a body beyond its box at which a probe is on it but for rounding.
+const NEAR: f64 = 1e-9;

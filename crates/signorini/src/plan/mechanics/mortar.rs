@@ -2,7 +2,7 @@
 
 use super::{Kind, Tested};
 use crate::plan::planner::Planner;
-use crate::problem::{self, CaseError, Friction, Method};
+use crate::problem::{self, CaseError, Enforcement, Friction, Method, Sliding};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Enforcement as Kept, Interaction, Mortar, System};
 
@@ -27,6 +27,10 @@ impl Planner<'_> {
             None
         };
         let stated = match (&key.method, unfit) {
+            // By the stress at points, without unknowns of its own.
+            (Some(Method::Mortar(problem::SolidMethod { enforcement: Some(Enforcement::Nitsche(_)), .. })), None) => {
+                return Ok(None);
+            }
             (Some(Method::Mortar(stated)), None) => stated.enforcement.as_ref(),
             (Some(method @ Method::Mortar(_)), Some((part, what))) => {
                 return Err(problem.error(method, format!("`{}` {what}", body(part).name())).help(
@@ -48,8 +52,36 @@ impl Planner<'_> {
                 self.check_axis(coulomb, contact.axis, &kinds[master.body])?;
             }
         }
-        let tested = Tested::by("mortar", contact.axis);
+        let slides_little = key.sliding == Some(Sliding::Small);
+        if slides_little {
+            contact.slides_little();
+        }
+        let tested = Tested { slides_little, ..Tested::by("mortar", contact.axis) };
         Ok(Some((Box::new(contact), tested)))
+    }
+
+    /// Whether small sliding may be chosen.
+    pub(super) fn check_sliding(
+        &self,
+        key: &problem::Contact,
+        tested: &Tested,
+        bodies: [&Part; 2],
+        (system, kinds): (&System, &[Kind]),
+    ) -> Result<(), CaseError> {
+        let Some(sliding) = key.sliding.as_ref().filter(|sliding| **sliding == Sliding::Small) else { return Ok(()) };
+        let fits = |part: &&Part| match kinds[part.body] {
+            Kind::Rigid { is_free, .. } => !is_free,
+            _ => system.bodies[part.body].is_linear(),
+        };
+        let message = match bodies.iter().find(|part| !fits(part)) {
+            Some(part) => format!(
+                "small sliding is for solids of small strain and rigid bodies that do not move freely, but not for `{}`",
+                system.bodies[part.body].name()
+            ),
+            None if tested.method != "mortar" => "small sliding requires contact by mortar".to_string(),
+            None => return Ok(()),
+        };
+        Err(self.problem.error(sliding, message).help("leave `sliding` out: any sliding distance is possible then"))
     }
 
     /// Axes of friction that a mortar does not have.

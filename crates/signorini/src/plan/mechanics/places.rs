@@ -2,9 +2,8 @@
 
 use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
-use crate::plan::solid::loads::no_spring;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
-use crate::problem::{Body, CaseError, List, Space, Value, suggestion};
+use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
@@ -367,4 +366,11 @@ impl Planner<'_> {
 /// Which components a support prescribes.
 fn at_start(support: &Support) -> [[bool; 3]; 2] {
     [support.displacement.each_ref().map(Option::is_some), support.rotation.each_ref().map(Option::is_some)]
+}
+
+/// A spring that is none.
+fn no_spring(problem: &Problem, at: &impl ProblemPart) -> CaseError {
+    problem
+        .error(at, "all stiffnesses of the spring are zero")
+        .help("give a positive stiffness in the supported directions, or leave `spring` out")
 }

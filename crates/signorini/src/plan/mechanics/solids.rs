@@ -1,5 +1,6 @@
 //! Solids of a system: finite elements at small or finite strain.
 
+use crate::plan::pieces::Pieces;
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{CaseError, Solid, SolidEdge, Space as Stated, suggestion};
@@ -13,14 +14,23 @@ use std::sync::Arc;
 /// The group of what lies on the axis of an axisymmetric body.
 pub(super) const AXIS: &str = "axis of rotation";
 
+/// A solid body of a system.
+pub(super) struct PlannedSolid {
+    pub body: Box<dyn Body>,
+    /// Whether a part of it lies on the axis of rotation.
+    pub on_axis: bool,
+    /// Of a mesh that does not hang together.
+    pub pieces: Option<Pieces>,
+}
+
 impl Planner<'_> {
-    /// A solid, and whether a part of it lies on the axis of rotation.
+    /// A solid with what is known of its mesh.
     pub(super) fn system_solid(
         &self,
         name: &str,
         key: &Solid,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(Box<dyn Body>, bool), CaseError> {
+    ) -> Result<PlannedSolid, CaseError> {
         match self.space {
             Stated::ThreeD => self.solid_body::<3>(name, key, Space::Solid, warnings),
             Stated::PlaneStress => self.solid_body::<2>(name, key, Space::PlaneStress, warnings),
@@ -35,10 +45,10 @@ impl Planner<'_> {
         key: &Solid,
         space: Space,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(Box<dyn Body>, bool), CaseError> {
-        let planned = self.solid::<D>(name, key, self.key(key), warnings)?;
+    ) -> Result<PlannedSolid, CaseError> {
+        let (mesh, degree) = self.solid::<D>(name, key, self.key(key), warnings)?;
         let law = self.material(key)?;
-        let mesh = planned.mesh;
+        let pieces = Pieces::new(name, &mesh);
         let mut groups = mesh.groups().clone();
         let mut on_axis = false;
         if space == Space::Axisymmetric {
@@ -52,11 +62,11 @@ impl Planner<'_> {
             let group = Group { cells: Vec::new(), sides, vertices: vertices.into_iter().collect() };
             groups.insert(AXIS.to_string(), group);
         }
-        let body = SolidBody::<D>::new(name, Arc::new(mesh), planned.degree, law, space, groups)
+        let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, law, space, groups)
             .map_err(|e| self.problem.error(&key.mesh, e.to_string()))?;
         let edges = self.edges(key)?;
         let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
-        Ok((body.into_body(), on_axis))
+        Ok(PlannedSolid { body: body.into_body(), on_axis, pieces })
     }
 
     /// The edges of a solid as they are stated.

@@ -1,12 +1,11 @@
 //! Meshes of solids: boxes and files.
 
-use super::evaluate;
+use crate::expression::Scope;
 use crate::plan::placed::Placed;
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
-use crate::problem;
-use crate::problem::CaseError;
 use crate::problem::units::LENGTH;
+use crate::problem::{self, CaseError, Problem};
 use signorini_fem::block::{block, graded};
 use signorini_fem::mesh::position;
 use signorini_fem::{Mesh, Overlap};
@@ -171,4 +170,16 @@ impl Planner<'_> {
              {entity}{{1}}; Delete; }}{{ {entity}{{2}}; Delete; }}, or select one of them by `group`"
         )))
     }
+}
+
+/// The value of an expression at a point and time, or an error that names it.
+fn evaluate<const D: usize>(problem: &Problem, placed: &Placed, x: &Point<D>, time: f64) -> Result<f64, CaseError> {
+    let position = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
+    let value = placed.expression.evaluate(&Scope { position, time });
+    if value.is_finite() {
+        return Ok(value);
+    }
+    let at: Vec<String> = x.iter().map(|v| format!("{v:.6}")).collect();
+    let message = format!("`{}` is {value} at ({}), t = {time}: not a finite number", placed.key, at.join(", "));
+    Err(problem.error(&placed.key, message))
 }

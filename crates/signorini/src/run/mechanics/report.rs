@@ -325,14 +325,48 @@ fn most_strained<'a>(plan: &MechanicsPlan, shown: &'a SystemShown) -> Option<(&'
     strained.max_by(|a, b| a.1.strain.total_cmp(&b.1.strain))
 }
 
-/// Warns of what looks wrong with a state.
-pub fn warn(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
+/// Share of the contact that closes in one increment from which the way of its slip is not known well.
+const CLOSES_AT_ONCE: f64 = 0.5;
+
+/// Warns of contacts with friction that closed all at once: before it closed nothing is known of slip.
+fn warn_of_closing(plan: &MechanicsPlan, [before, now]: [&IncrementResult; 2], time: f64, record: &mut Record) {
+    for (k, (contact, sites)) in plan.system.contacts.iter().zip(&now.sites).enumerate() {
+        let was_open = |i: usize| before.sites.get(k).and_then(|s| s.get(i)).is_none_or(|s| s.status == Status::Open);
+        let area = |list: &mut dyn Iterator<Item = &SiteResult>| list.map(SiteResult::contact_area).sum::<f64>();
+        let of_surface = plan.contacts[k].carries == Carried::Pressure && !plan.contacts[k].along_a_curve;
+        let whole = area(&mut sites.iter());
+        let new = area(&mut sites.iter().enumerate().filter(|(i, _)| was_open(*i)).map(|s| s.1));
+        if contact.law().is_none() || !of_surface || new <= CLOSES_AT_ONCE * whole {
+            continue;
+        }
+        let message = format!(
+            "contact `{}`: {:.0} % of the contact closes in the increment to t = {time}, and its slip is measured from \
+             positions before contact; use more increments if stick zones matter",
+            contact.name(),
+            100.0 * new / whole
+        );
+        record.warn_once(Warning::new(WarningKind::ClosesAtOnce, message).at_time(time));
+    }
+}
+
+/// Warns of what looks wrong with a state, and of what happened in the increment before it.
+pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
+    warn_of_closing(plan, [before, result], time, record);
     if let Some(told) = &result.stability {
         warn_of_stability(&stability_report(&plan.system, told), time, record);
     }
-    for (contact, sites) in plan.system.contacts.iter().zip(&result.sites) {
+    for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
+        let by_mortar = tested.method == "mortar";
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
+            continue;
+        }
+        if by_mortar && sites.iter().all(|s| s.gap.is_none()) {
+            let message = format!(
+                "contact `{}`: no part of the slave faces the master; check the directions of the normals",
+                contact.name()
+            );
+            record.warn_once(Warning::new(WarningKind::NotFacing, message).at_time(time));
             continue;
         }
         // Once for each contact.

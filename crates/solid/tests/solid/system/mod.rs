@@ -50,18 +50,18 @@ fn cuboid(low: [f64; 3], high: [f64; 3], n: [usize; 3], map: impl FnMut(Point<3>
     block::<3>(&std::array::from_fn(|k| even(low[k], high[k], n[k])), 1, map)
 }
 
-fn solid<const D: usize>(name: &str, mesh: Mesh<D>, degree: usize, elastic: Elastic, law: StressLaw) -> SolidBody<D> {
+pub fn solid<const D: usize>(name: &str, mesh: Mesh<D>, degree: usize, elastic: Elastic, law: StressLaw) -> SolidBody<D> {
     let space = if D == 2 { Space::PlaneStrain } else { Space::Solid };
     let groups = mesh.groups().clone();
     SolidBody::new(name, Arc::new(mesh), degree, (elastic, law), space, groups).unwrap()
 }
 
-fn part(body: usize, group: &str) -> Part {
+pub fn part(body: usize, group: &str) -> Part {
     Part { body, group: (!group.is_empty()).then(|| group.to_string()) }
 }
 
 /// Holds the components of which a value is given, all over a group, at that value times the time.
-fn hold(body: usize, group: &str, values: [Option<f64>; 3]) -> Support {
+pub fn hold(body: usize, group: &str, values: [Option<f64>; 3]) -> Support {
     let field = |value: f64| -> TimeField { Arc::new(move |_, t| value * t) };
     Support {
         name: group.into(),
@@ -72,13 +72,13 @@ fn hold(body: usize, group: &str, values: [Option<f64>; 3]) -> Support {
     }
 }
 
-fn load(body: usize, group: &str, load: TimedLoad) -> PlacedLoad {
+pub fn load(body: usize, group: &str, load: TimedLoad) -> PlacedLoad {
     PlacedLoad { name: group.into(), part: part(body, group), load }
 }
 
 type TimeField = signorini_mechanics::system::TimeField;
 
-fn rigid(shape: impl RigidShape + 'static, motion: impl Fn(f64) -> Vector<3> + Send + Sync + 'static) -> RigidBody {
+pub fn rigid(shape: impl RigidShape + 'static, motion: impl Fn(f64) -> Vector<3> + Send + Sync + 'static) -> RigidBody {
     let zero = Vector::<3>::zeros();
     let centre = shape.centre();
     let motion = Motion::Prescribed(Arc::new(move |t| RigidMotion::new(zero, zero, motion(t))));
@@ -125,12 +125,12 @@ fn touch(
 }
 
 /// Force of a contact on its slave.
-fn force(result: &IncrementResult, contact: usize) -> Vector<3> {
+pub fn force(result: &IncrementResult, contact: usize) -> Vector<3> {
     result.sites[contact].iter().map(SiteResult::force).sum()
 }
 
 /// Solves at one time after the other; the last state and all results.
-fn run(system: &mut System, times: &[f64]) -> (SystemState, Vec<IncrementResult>) {
+pub fn run(system: &mut System, times: &[f64]) -> (SystemState, Vec<IncrementResult>) {
     system.prepare().unwrap();
     let mut state = system.start();
     let mut results = Vec::new();

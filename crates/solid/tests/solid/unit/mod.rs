@@ -1,6 +1,4 @@
 //! Parts by themselves.
 
-mod assembly;
-mod friction_solve;
 mod hyperelastic;
-mod model;
+mod stiffness;

@@ -1,30 +1,47 @@
-//! The coefficients of a prescribed displacement: at vertices its values, on edges and sides the best fit.
+//! The functions of a group, and the coefficients of a field on it: at vertices its values, on edges and sides the best fit.
 
-use super::group::{global, vertices};
-use super::statement::Support;
-use crate::body::{Bodies, Body};
+use crate::body::Body;
 use nalgebra::DMatrix;
 use signorini_contact::FacePoint;
 use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::rules::rule;
-use signorini_fem::{CellShape, Local, Side};
+use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::Point;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Coefficients of a prescribed displacement: its values at vertices, and the best fit on edges and sides.
-pub(crate) fn project<const D: usize>(
-    bodies: &Bodies<D>,
-    support: &Support,
+/// The vertices of a group.
+fn vertices<const D: usize>(body: &Body<D>, group: &Group) -> BTreeSet<u32> {
+    let mesh = &body.mesh;
+    let of_sides = group.sides.iter().flat_map(|side| mesh.side_vertices(*side));
+    let of_cells = group.cells.iter().flat_map(|cell| mesh.vertices(*cell as usize));
+    group.vertices.iter().copied().chain(of_sides).chain(of_cells).collect()
+}
+
+/// All functions of a group.
+pub(super) fn functions<const D: usize>(body: &Body<D>, group: &Group) -> BTreeSet<u32> {
+    let dofs = &body.dofs;
+    let of_side = |side: &Side| {
+        let list = dofs.functions(side.cell as usize);
+        dofs.on_side(*side).into_iter().map(|k| list[k]).collect::<Vec<u32>>()
+    };
+    let of_vertices = group.vertices.iter().filter_map(|v| dofs.vertex(*v));
+    let of_cells = group.cells.iter().flat_map(|cell| dofs.functions(*cell as usize).iter().copied());
+    of_vertices.chain(group.sides.iter().flat_map(of_side)).chain(of_cells).collect()
+}
+
+/// Coefficients of a field: its values at vertices, and the best fit on edges and sides.
+pub(super) fn project<const D: usize>(
+    body: &Body<D>,
+    group: &Group,
     displacement: &dyn Fn(&Point<D>) -> Point<D>,
 ) -> BTreeMap<u32, Point<D>> {
-    let body = &bodies.list[support.body];
     let mut out: BTreeMap<u32, Point<D>> = BTreeMap::new();
     let mut scale = 0.0f64;
-    for v in vertices(bodies, support) {
+    for v in vertices(body, group) {
         let value = displacement(&body.mesh.nodes()[v as usize]);
         scale = scale.max(value.amax());
         if let Some(f) = body.dofs.vertex(v) {
-            out.insert(global(bodies, support.body, f), value);
+            out.insert(f, value);
         }
     }
     if body.degree == 1 {
@@ -32,8 +49,8 @@ pub(crate) fn project<const D: usize>(
     }
     // What vertices leave over goes to the edges by least squares, and what these leave over to the sides: so that two
     // groups agree on the edge that they share.
-    for entity in edges(body, &support.group.sides).iter().chain(&interiors(body, &support.group.sides)) {
-        fit(bodies, support.body, entity, scale, displacement, &mut out);
+    for entity in edges(body, &group.sides).iter().chain(&interiors(body, &group.sides)) {
+        fit(body, entity, scale, displacement, &mut out);
     }
     out
 }
@@ -98,19 +115,14 @@ fn places<const D: usize>(body: &Body<D>, cell: usize, own: impl Fn(&Mode) -> bo
 /// Fits the functions of an edge or side to what those known leave over of a displacement, unless that is round-off of
 /// `scale`.
 fn fit<const D: usize>(
-    bodies: &Bodies<D>,
-    number: usize,
+    body: &Body<D>,
     entity: &Entity,
     scale: f64,
     displacement: &dyn Fn(&Point<D>) -> Point<D>,
     known: &mut BTreeMap<u32, Point<D>>,
 ) {
-    let body = &bodies.list[number];
     let n = entity.own.len();
-    let function = |k: usize| {
-        let (f, sign) = body.dofs.function(entity.cell, k);
-        (global(bodies, number, f), sign)
-    };
+    let function = |k: usize| body.dofs.function(entity.cell, k);
     if entity.own.iter().all(|&k| known.contains_key(&function(k).0)) {
         return;
     }

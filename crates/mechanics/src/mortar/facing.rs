@@ -1,0 +1,77 @@
+//! Which faces of whole bodies may touch each other: of two thin bodies that lie on each other only those between them.
+
+use crate::body::{Body, PlaceError};
+use crate::part::Part;
+use crate::points::Master;
+use crate::surface::{Faces, Surface};
+use rayon::prelude::*;
+use signorini_contact::{ContactSurface, looks_at};
+use signorini_geometry::{Point, Vector};
+
+/// The faces of both sides that may touch; all of a side where nothing else is said.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facing {
+    slave: Option<Vec<bool>>,
+    master: Option<Vec<bool>>,
+}
+
+impl Facing {
+    /// Of a whole body of small strains, which does not turn far, those faces that look at the other side at the start: over
+    /// the closest point of the other, against its normal. Of what is stated as a group all.
+    ///
+    /// # Errors
+    /// A side that cannot be touched.
+    pub fn new(
+        slave: (&Part, &dyn Body),
+        surface: &dyn Surface,
+        master: (&Part, &dyn Body),
+    ) -> Result<Self, PlaceError> {
+        let is_whole = |(part, body): (&Part, &dyn Body)| part.group.is_none() && body.is_linear();
+        let states = [slave.1.start(), master.1.start()];
+        let other = master.1.master(master.0.group.as_deref(), &states[1])?;
+        let mut out = Facing::default();
+        if is_whole(slave) {
+            out.slave = looking(surface, other.as_ref());
+        }
+        if let Some(faces) = master.1.surface(master.0.group.as_deref(), &states[1]).filter(|_| is_whole(master)) {
+            out.master = looking(faces.as_ref(), slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref());
+        }
+        Ok(out)
+    }
+
+    pub fn slave(&self, face: usize) -> bool {
+        self.slave.as_ref().is_none_or(|list| list[face])
+    }
+
+    pub fn master(&self, face: usize) -> bool {
+        self.master.as_ref().is_none_or(|list| list[face])
+    }
+}
+
+/// Which faces look at the other side; none told where none does.
+fn looking(surface: &dyn Surface, other: &dyn Master) -> Option<Vec<bool>> {
+    other.prepare();
+    let looks = |(x, normal): &(Point<3>, Vector<3>)| {
+        let gap = other.nearest(x, f64::INFINITY, None).and_then(|met| met.gap(x));
+        gap.is_some_and(|(_, outward)| looks_at(normal, &outward))
+    };
+    let list: Vec<bool> = centres(surface).par_iter().map(looks).collect();
+    list.contains(&true).then_some(list)
+}
+
+/// Middle and normal of every face.
+fn centres(surface: &dyn Surface) -> Vec<(Point<3>, Vector<3>)> {
+    match surface.faces().0 {
+        Faces::Plane(faces) => centres_of(faces),
+        Faces::Space(faces) => centres_of(faces),
+    }
+}
+
+fn centres_of<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<(Point<3>, Vector<3>)> {
+    let spatial = |x: &Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
+    let of = |face: usize| {
+        let at = faces.at(face, &faces.shape(face).centre());
+        (spatial(&at.x), spatial(&at.area_normal()))
+    };
+    (0..faces.face_count()).map(of).collect()
+}

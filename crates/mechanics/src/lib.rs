@@ -47,6 +47,7 @@ pub mod rigid_body;
 mod rigid_system;
 mod rotation;
 pub mod saved;
+pub mod shown_surface;
 mod simpler;
 mod site_result;
 mod slack;
@@ -75,6 +76,7 @@ pub use points::{
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
+pub use shown_surface::ShownSurface;
 pub use simpler::SimplerFriction;
 pub use site_result::{OfSurface, SiteResult};
 pub use stability::{Stability, Unstable};

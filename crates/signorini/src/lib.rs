@@ -34,8 +34,8 @@ pub mod testing {
     pub use crate::output::membrane_map::{FREE, Field, fill};
     pub use crate::output::page::{Scale, sheet};
     pub use crate::output::panel::{Axis, Panel};
+    pub use crate::output::pressure_map::{directed, distance};
     pub use crate::output::render::{Body, Look, Paint, render};
-    pub use crate::output::solid_space::{directed, distance};
     pub use crate::paths::output::{Line, LinePoint};
     pub use crate::paths::picture::Cover;
     pub use crate::paths::surface::Surface;
@@ -47,7 +47,6 @@ pub mod testing {
     pub use crate::run::mechanics::recovered::recover;
     pub use crate::run::outcome::Ending;
     pub use crate::run::record::{Record, begin, of_earlier_run};
-    pub use crate::run::solid::saved::{frame_file, frames, write_frame};
     pub use crate::run::strain::largest;
     pub use crate::scene::case::Scene;
     pub use crate::scene::picture::{HEAD, SIZE, bodies, camera, seen};

@@ -20,7 +20,7 @@ mod rigid_shape;
 pub mod solid;
 mod surface;
 
-use crate::problem::{Analysis, Body, CaseError, Problem, Space};
+use crate::problem::{Analysis, CaseError, Problem, Space};
 use planner::Planner;
 
 pub use domain::Pieces;
@@ -36,8 +36,6 @@ pub use surface::Contact;
 pub enum Plan {
     Line(MembranePlan<1>),
     Plane(MembranePlan<2>),
-    PlaneSolids(Box<solid::SolidPlan<2>>),
-    Solids(Box<solid::SolidPlan<3>>),
     Mechanics(Box<mechanics::MechanicsPlan>),
 }
 
@@ -58,14 +56,7 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
         return Err(problem.error(stability, message));
     }
     match problem.space {
-        Space::PlaneStrain | Space::PlaneStress => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
-        }
-        Space::ThreeD => Ok(Plan::Solids(Box::new(Planner::new(problem)?.solids::<3>()?))),
-        Space::Axisymmetric if problem.bodies.values().any(|b| matches!(b, Body::Solid(_))) => {
-            Ok(Plan::PlaneSolids(Box::new(Planner::new(problem)?.solids::<2>()?)))
-        }
         Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(problem)?.membrane::<1>()?)),
-        Space::Plane => Ok(Plan::Plane(Planner::new(problem)?.membrane::<2>()?)),
+        _ => Ok(Plan::Plane(Planner::new(problem)?.membrane::<2>()?)),
     }
 }

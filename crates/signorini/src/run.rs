@@ -11,7 +11,6 @@ pub(crate) mod outcome;
 mod planned;
 pub(crate) mod record;
 mod sizes;
-pub(crate) mod solid;
 pub(crate) mod strain;
 
 use crate::plan::{Plan, plan};
@@ -81,8 +80,6 @@ fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
     let planned: Box<dyn Planned> = match plan(problem)? {
         Plan::Line(p) => Box::new(p),
         Plan::Plane(p) => Box::new(p),
-        Plan::PlaneSolids(p) => p,
-        Plan::Solids(p) => p,
         Plan::Mechanics(p) => p,
     };
     planned.model()
@@ -92,8 +89,6 @@ fn planned(plan: &Plan) -> &dyn Planned {
     match plan {
         Plan::Line(p) => p,
         Plan::Plane(p) => p,
-        Plan::PlaneSolids(p) => &**p,
-        Plan::Solids(p) => &**p,
         Plan::Mechanics(p) => &**p,
     }
 }

@@ -4,6 +4,7 @@
 //! Pieces and gaps are those of the current configuration, weights those of the reference one: the dual functions of faces
 //! that are covered completely are then always the same.
 
+use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
     ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
@@ -68,6 +69,14 @@ impl Nodes {
         match self {
             Nodes::Plane(nodes) => places(nodes),
             Nodes::Space(nodes) => places(nodes),
+        }
+    }
+
+    /// The flat faces between the nodes.
+    pub fn faces(&self) -> Option<ShownSurface> {
+        match self {
+            Nodes::Plane(nodes) => ShownSurface::new(nodes, &Some),
+            Nodes::Space(nodes) => ShownSurface::new(nodes, &Some),
         }
     }
 

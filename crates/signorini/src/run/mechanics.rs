@@ -11,13 +11,14 @@ use super::record::Record;
 use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::system::SystemShown;
-use crate::output::{Folder, OutputError, system_files, system_pictures};
+use crate::output::{Folder, OutputError, system_files, system_pictures, tables};
 use crate::plan::Head;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
-use crate::problem::CaseError;
+use crate::problem::{CaseError, Space};
 use crate::report::{ForceBounds, Reason, StepReport};
 use serde_json::{Value, json};
 use signorini_audit::Finding;
+use signorini_geometry::Vector;
 use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
@@ -47,11 +48,12 @@ pub struct MechanicsModel {
     audit: SystemAudit,
 }
 
-/// What a frame of the film shows: the bodies as they are.
+/// What a frame of the film shows: the bodies as they are, and in the plane the intervals in contact.
 #[derive(Clone)]
 struct Frame {
     time: f64,
     bodies: Vec<BodyState>,
+    zones: Vec<[Vector<3>; 2]>,
 }
 
 impl Frame {
@@ -62,7 +64,8 @@ impl Frame {
     /// Writes the frame of an increment beside the checkpoint.
     fn write(&self, folder: &Folder, index: usize) -> Result<(), OutputError> {
         let bodies: Vec<[&[f64]; 2]> = self.bodies.iter().map(|b| [&b.configuration[..], &b.internal[..]]).collect();
-        let text = json!({"time": self.time, "bodies": bodies}).to_string();
+        let zones: Vec<[[f64; 3]; 2]> = self.zones.iter().map(|ends| ends.map(Into::into)).collect();
+        let text = json!({"time": self.time, "bodies": bodies, "zones": zones}).to_string();
         folder.write(&Self::file(index), text.as_bytes())
     }
 
@@ -73,7 +76,12 @@ impl Frame {
             let mut value: Value = serde_json::from_str(&text).ok()?;
             let bodies: Vec<[Vec<f64>; 2]> = take(&mut value["bodies"])?;
             let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
-            Some(Frame { time: value["time"].as_f64()?, bodies: bodies.into_iter().map(body).collect() })
+            let zones: Vec<[[f64; 3]; 2]> = take(&mut value["zones"])?;
+            Some(Frame {
+                time: value["time"].as_f64()?,
+                bodies: bodies.into_iter().map(body).collect(),
+                zones: zones.into_iter().map(|ends| ends.map(Into::into)).collect(),
+            })
         };
         texts.map(frame).collect()
     }
@@ -95,7 +103,7 @@ impl MechanicsModel {
     pub fn new(plan: MechanicsPlan) -> Self {
         let state = plan.system.start();
         let mut film = Film::default();
-        film.add(&Frame { time: 0.0, bodies: state.bodies.clone() });
+        film.add(&Frame { time: 0.0, bodies: state.bodies.clone(), zones: Vec::new() });
         Self {
             plan,
             state,
@@ -312,11 +320,11 @@ impl Model for MechanicsModel {
         }
         record.steps.push(step);
         report::warn(&self.plan, &result, &shown, record);
+        if self.plan.head.pictures && self.plan.times.len() > 1 {
+            self.film.add(&Frame { time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() });
+        }
         self.last = Some(shown);
         self.result = result;
-        if self.plan.head.pictures && self.plan.times.len() > 1 {
-            self.film.add(&Frame { time, bodies: self.state.bodies.clone() });
-        }
         // What slips count from next.
         if let Err(error) = self.plan.system.accept(&self.state) {
             let Failure { reason, text, .. } = self.failed(&error, Vec::new());
@@ -351,6 +359,10 @@ impl Model for MechanicsModel {
             folder
                 .write(&format!("contact/{name}_{number}.vtp"), &system_files::vtp(&contact.fields, units.as_ref())?)?;
             folder.write(&format!("contact/{name}_{number}.csv"), system_files::csv(&contact.fields).as_bytes())?;
+            if let Some(surface) = &contact.surface {
+                let outline = tables::zone_outline(&surface.boundary, self.plan.space == Space::ThreeD);
+                folder.write(&format!("contact/{name}_{number}_outline.csv"), outline.as_bytes())?;
+            }
         }
         let mut rigid = Vec::new();
         for (name, file) in system_files::rigid_files(&self.plan, shown)? {
@@ -378,10 +390,13 @@ impl Model for MechanicsModel {
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
-        let frame =
-            |frame: &Frame| SystemShown { time: frame.time, ..SystemShown::of_bodies(&self.plan, &frame.bodies) };
+        let frame = |frame: &Frame| SystemShown {
+            time: frame.time,
+            zones: frame.zones.clone(),
+            ..SystemShown::of_bodies(&self.plan, &frame.bodies)
+        };
         let frames: Vec<SystemShown> = self.film.frames().iter().map(frame).collect();
-        system_pictures::draw(&record.folder, &self.plan, shown, &frames, &record.steps)
+        system_pictures::draw(&record.folder, &self.plan, shown, frames, &record.steps)
     }
 
     fn first_picture(&self) -> Option<String> {
@@ -408,8 +423,9 @@ impl Model for MechanicsModel {
     }
 
     fn save(&self, folder: &Folder, next: usize) -> Result<Option<Value>, OutputError> {
-        if let Some(time) = self.last.as_ref().filter(|_| self.plan.head.pictures).map(|shown| shown.time) {
-            Frame { time, bodies: self.state.bodies.clone() }.write(folder, next - 1)?;
+        if let Some(shown) = self.last.as_ref().filter(|_| self.plan.head.pictures) {
+            let frame = Frame { time: shown.time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() };
+            frame.write(folder, next - 1)?;
         }
         let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({

@@ -5,11 +5,8 @@ use super::mechanics::MechanicsModel;
 use super::membrane::MembraneModel;
 use super::outcome::RunError;
 use super::planned::Planned;
-use super::solid::{self, SolidModel};
-use crate::output::solid_fields::SolidDisplay;
-use crate::output::{pictures, solid_pictures, system_pictures};
+use crate::output::{pictures, system_pictures};
 use crate::plan::mechanics::MechanicsPlan;
-use crate::plan::solid::SolidPlan;
 use crate::plan::{MembranePlan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 use crate::problem::CaseError;
 use crate::problem::units::Units;
@@ -29,9 +26,8 @@ use std::sync::Arc;
 const SOLVES: [f64; 2] = [6.0, 12.0];
 /// A surface may leave the straight line within a cell by this part of its height.
 const BENDS: f64 = 0.1;
-/// Lengths in metres and Young's moduli in pascals beyond these look wrong.
+/// Lengths in metres beyond these look wrong.
 const LENGTHS: RangeInclusive<f64> = 1e-9..=1e5;
-const MODULI: RangeInclusive<f64> = 1e1..=3e12;
 /// More unknowns than this are not solved for just to look.
 const LOOK: usize = 200_000;
 
@@ -122,58 +118,10 @@ fn of_membrane<const D: usize>(plan: &MembranePlan<D>) -> Result<Value, CaseErro
     Ok(sizes)
 }
 
-/// What a run of solids would have to do, after checking that their supports and contacts make sense.
-fn of_solids<const D: usize>(plan: &SolidPlan<D>) -> Result<Value, CaseError> {
-    let mut model = solid::model(plan)?;
-    let judged = solid::judge(plan, &mut model)?;
-    let cost = solid::cost(plan, &model)?;
-    let free: Vec<String> = model
-        .free_modes()
-        .iter()
-        .map(|m| format!("`{}` is free {} until it is in contact", m.body, m.motion))
-        .collect();
-    Ok(json!({
-        "method": "mortar",
-        "bodies": plan.bodies.len(),
-        "cells": plan.bodies.iter().map(|b| b.mesh.cell_count()).sum::<usize>(),
-        "unknowns": model.unknowns(),
-        "memory_about": format!("{:.2} GiB", solid::memory(&cost) / f64::from(1u32 << 30)),
-        "factorisation_about": format!("{:.1} s", cost.operations / solid::OPERATIONS_PER_SECOND),
-        "increments": plan.times.len(),
-        "supports": plan.head.problem.supports.len(),
-        "loads": plan.loads.len(),
-        "contacts": plan.contacts.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
-        "free": free,
-        "interpreted": plan.head.interpreted,
-        "warnings": plan.head.warnings.iter().cloned().chain(odd_solids(plan).into_iter().chain(judged).map(Warning::from)).collect::<Vec<_>>(),
-    }))
-}
-
 /// What is odd about the size of a body.
 fn odd_length(units: Units, length: f64, what: &str) -> Option<String> {
     let metres = length * units.length;
     (!LENGTHS.contains(&metres)).then(|| format!("{what} is {metres:.1e} m long; check the units"))
-}
-
-/// What is odd about sizes and stiffness of solids, where their units are known.
-pub(super) fn odd_solids<const D: usize>(plan: &SolidPlan<D>) -> Vec<String> {
-    let Some(units) = plan.head.units else { return Vec::new() };
-    let mut out = Vec::new();
-    for body in &plan.bodies {
-        let nodes = body.mesh.nodes();
-        let Some(first) = nodes.first() else { continue };
-        let (low, high) = nodes.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
-        out.extend(odd_length(units, (high - low).max(), &format!("`{}`", body.name)));
-        let pascals = body.material.youngs_modulus * units.force / units.length.powi(2);
-        if !MODULI.contains(&pascals) {
-            out.push(format!(
-                "the modulus of `{}` is {pascals:.1e} Pa, {} any solid; check the units",
-                body.name,
-                if pascals < *MODULI.start() { "softer than" } else { "stiffer than" }
-            ));
-        }
-    }
-    out
 }
 
 impl<const D: usize> Planned for MembranePlan<D> {
@@ -197,23 +145,6 @@ impl<const D: usize> Planned for MembranePlan<D> {
 
     fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
         Ok(Box::new(MembraneModel::new(*self)?))
-    }
-}
-
-impl<const D: usize> Planned for SolidPlan<D> {
-    fn sizes(&self) -> Result<Value, CaseError> {
-        of_solids(self)
-    }
-
-    fn preview(&self) -> Result<Option<String>, RunError> {
-        let model = solid::model(self)?;
-        let display = SolidDisplay::new(&model);
-        let fields = display.fields(&model, &vec![0.0; model.bodies.unknowns()]);
-        Ok(Some(solid_pictures::preview(self, &display, &fields)?))
-    }
-
-    fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
-        Ok(Box::new(SolidModel::new(*self)?))
     }
 }
 

@@ -1,7 +1,6 @@
 //! The independent check of what was found: states as plain data for `signorini-audit`, and what its findings come to.
 
 mod report;
-pub mod solid;
 pub mod system;
 
 pub use report::{answer, is_resolved, of_errors, of_membrane, of_warnings};

@@ -1,0 +1,72 @@
+//! Names of bodies in pictures, where there are several.
+
+use super::camera::Camera;
+use super::chart::{range, word};
+use super::colours::INK;
+use super::page::{Page, text_width};
+use super::system::{SystemShown, moved};
+
+/// Size of the letters.
+const NAME: f64 = 17.0;
+
+/// Writes the names of curves, solids and free bodies.
+pub fn write(page: &mut Page, shown: &SystemShown, camera: &Camera) {
+    let free = || shown.rigid.iter().filter(|r| r.is_free);
+    if shown.curves.len() + shown.solids().count() + free().count() < 2 {
+        return;
+    }
+    let mut taken: Vec<(f64, f64)> = Vec::new();
+    for r in free() {
+        let at = camera.at(&r.centre);
+        word(&mut page.svg, at, &r.name, INK);
+        taken.push(at);
+    }
+    taken.extend(of_solids(page, shown, camera));
+    of_curves(page, shown, camera, taken);
+}
+
+/// Writes the name of every solid in the middle of what is seen of it, and beside it where the name is wider.
+fn of_solids(page: &mut Page, shown: &SystemShown, camera: &Camera) -> Vec<(f64, f64)> {
+    let [left, top, right, bottom] = camera.area;
+    let mut taken = Vec::new();
+    for fields in shown.solids() {
+        let places: Vec<(f64, f64)> = moved(fields).iter().map(|x| camera.at(x)).collect();
+        let (x, y) = (range(places.iter().map(|p| p.0)), range(places.iter().map(|p| p.1)));
+        let (x, y) = ((x.0.max(left), x.1.min(right)), (y.0.max(top), y.1.min(bottom)));
+        if x.0 >= x.1 || y.0 >= y.1 {
+            continue;
+        }
+        let width = text_width(&fields.name, NAME);
+        let beside = width > x.1 - x.0 && x.1 + width + 16.0 < page.room()[2];
+        let middle = if beside { x.1 + 8.0 + 0.5 * width } else { 0.5 * (x.0 + x.1) };
+        let at = (middle, 0.5 * (y.0 + y.1));
+        word(&mut page.svg, at, &fields.name, INK);
+        taken.push(at);
+    }
+    taken
+}
+
+/// Writes the name of every curve at the point of it that is farthest from all that is not it.
+fn of_curves(page: &mut Page, shown: &SystemShown, camera: &Camera, mut taken: Vec<(f64, f64)>) {
+    let [left, top, right, bottom] = camera.area;
+    for (number, curve) in shown.curves.iter().enumerate() {
+        let others = shown.curves.iter().enumerate().filter(|(k, _)| *k != number).flat_map(|(_, c)| &c.points);
+        let others: Vec<(f64, f64)> = others.map(|x| camera.at(x)).chain(taken.iter().copied()).collect();
+        let half = 0.5 * text_width(&curve.name, NAME);
+        let inside = |&(x, y): &(f64, f64)| x - half > left && x + half < right && y > top && y < bottom;
+        let room = |p: &(f64, f64)| {
+            others.iter().map(|q| (p.0 - q.0).hypot(p.1 - q.1)).fold(f64::INFINITY, f64::min).min(4.0 * half)
+        };
+        let places = curve.points.iter().map(|x| camera.at(x)).filter(inside);
+        // Of equal ones the first.
+        let best = places.fold(None, |best: Option<((f64, f64), f64)>, p| match best {
+            Some((_, r)) if r >= room(&p) => best,
+            _ => Some((p, room(&p))),
+        });
+        if let Some((at, _)) = best {
+            // Beside the curve.
+            word(&mut page.svg, (at.0, at.1 - NAME), &curve.name, INK);
+            taken.push(at);
+        }
+    }
+}

@@ -31,7 +31,11 @@ impl<'a> Axis<'a> {
 
     /// From zero to a little above the largest value, or from a little below the smallest to zero, or both.
     pub fn from_zero(name: &'a str, (low, high): (f64, f64)) -> Self {
-        let (low, high) = rounded_range((low.min(0.0), high.max(0.0)));
+        let (low, high) = match (low.min(0.0), high.max(0.0)) {
+            // Of nothing but zeros.
+            (low, high) if high - low < f64::MIN_POSITIVE.sqrt() => (0.0, 1.0),
+            range => rounded_range(range),
+        };
         let pad = 0.06 * (high - low);
         let low = if low < 0.0 { low - pad } else { low };
         Axis { name, range: (low, if high > 0.0 { high + pad } else { high }), log: false }

@@ -5,6 +5,7 @@ use super::chart::{range, word};
 use super::colours::INK;
 use super::page::{Page, text_width};
 use super::system::{SystemShown, moved};
+use crate::fields::Fields;
 
 /// Size of the letters.
 const NAME: f64 = 17.0;
@@ -25,7 +26,8 @@ pub fn write(page: &mut Page, shown: &SystemShown, camera: &Camera) {
     of_curves(page, shown, camera, taken);
 }
 
-/// Writes the name of every solid in the middle of what is seen of it, and beside it where the name is wider.
+/// Writes the name of every solid in the middle of what is seen of it, and beside it where the name is wider; of a body
+/// with a hole there, where most of it is around.
 fn of_solids(page: &mut Page, shown: &SystemShown, camera: &Camera) -> Vec<(f64, f64)> {
     let [left, top, right, bottom] = camera.area;
     let mut taken = Vec::new();
@@ -37,13 +39,62 @@ fn of_solids(page: &mut Page, shown: &SystemShown, camera: &Camera) -> Vec<(f64,
             continue;
         }
         let width = text_width(&fields.name, NAME);
+        let middle = (0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1));
         let beside = width > x.1 - x.0 && x.1 + width + 16.0 < page.room()[2];
-        let middle = if beside { x.1 + 8.0 + 0.5 * width } else { 0.5 * (x.0 + x.1) };
-        let at = (middle, 0.5 * (y.0 + y.1));
+        let at = match beside {
+            true => (x.1 + 8.0 + 0.5 * width, middle.1),
+            false => Raster::new(fields, &places, camera.area).place(middle),
+        };
         word(&mut page.svg, at, &fields.name, INK);
         taken.push(at);
     }
     taken
+}
+
+/// Which squares of the picture a body covers, row by row.
+struct Raster {
+    area: [f64; 4],
+    count: [usize; 2],
+    covered: Vec<bool>,
+}
+
+/// Side of the squares, on the page.
+const SQUARE: f64 = 12.0;
+
+impl Raster {
+    fn new(fields: &Fields, places: &[(f64, f64)], area: [f64; 4]) -> Self {
+        let [left, top, right, bottom] = area;
+        let count = [right - left, bottom - top].map(|length| (length / SQUARE).ceil().max(1.0) as usize);
+        let mut out = Raster { area, count, covered: vec![false; count[0] * count[1]] };
+        for (_, cell) in &fields.cells {
+            let x = range(cell.iter().map(|&k| places[k as usize].0));
+            let y = range(cell.iter().map(|&k| places[k as usize].1));
+            let within = |low: f64, high: f64, from: f64, most: usize| {
+                let at = |v: f64| ((v - from) / SQUARE).clamp(0.0, most as f64);
+                at(low).floor() as usize..at(high).ceil() as usize
+            };
+            for row in within(y.0, y.1, top, count[1]) {
+                within(x.0, x.1, left, count[0]).for_each(|column| out.covered[row * count[0] + column] = true);
+            }
+        }
+        out
+    }
+
+    /// The middle where it is covered; otherwise the first square that is farthest from all that are not.
+    fn place(&self, middle: (f64, f64)) -> (f64, f64) {
+        let [left, top, ..] = self.area;
+        let column = (((middle.0 - left) / SQUARE) as usize).min(self.count[0] - 1);
+        let row = (((middle.1 - top) / SQUARE) as usize).min(self.count[1] - 1);
+        if self.covered[row * self.count[0] + column] {
+            return middle;
+        }
+        let at = |k: usize| [k % self.count[0], k / self.count[0]].map(|i| i as f64);
+        let (inside, outside): (Vec<usize>, Vec<usize>) = (0..self.covered.len()).partition(|&k| self.covered[k]);
+        let apart = |k: usize, l: usize| (at(k)[0] - at(l)[0]).hypot(at(k)[1] - at(l)[1]);
+        let room = |k: usize| outside.iter().map(|&l| apart(k, l)).fold(f64::INFINITY, f64::min);
+        let best = inside.into_iter().map(|k| (k, room(k))).reduce(|a, b| if b.1 > a.1 { b } else { a });
+        best.map_or(middle, |(k, _)| (left + (at(k)[0] + 0.5) * SQUARE, top + (at(k)[1] + 0.5) * SQUARE))
+    }
 }
 
 /// Writes the name of every curve at the point of it that is farthest from all that is not it.

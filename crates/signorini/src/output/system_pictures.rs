@@ -80,12 +80,16 @@ fn contact_zone(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Resul
         ..view
     };
     let mut out = Vec::new();
-    if let Some(frame) = system_plane::window(shown, view.room).filter(|_| !in_space) {
+    if let Some(frame) = system_plane::window(shown).filter(|_| !in_space) {
         let zone = View { note: view.note.clone(), ..near(frame, View::of(plan, shown)) };
         out.push(("contact_zone".into(), scene(plan, shown, &zone, &title)?));
     }
     let averted = if in_space { facing_contact(shown) } else { None };
-    let around = around_contact(shown);
+    let mut around = around_contact(shown);
+    if let Some(frame) = around.as_mut().filter(|_| !in_space) {
+        // Not beyond what the whole picture shows.
+        *frame = [frame[0].sup(&view.room[0]), frame[1].inf(&view.room[1])];
+    }
     let small = around.filter(|frame| size(*frame) < SMALL * size(shown.bounds()));
     if small.is_some() || (around.is_some() && averted.is_some()) {
         let mut zone = View { note: "contact zone".into(), ..View::of(plan, shown) };

@@ -47,17 +47,20 @@ pub fn frame(view: &mut View, space: Space, shown: &SystemShown) {
 }
 
 /// The surroundings of surfaces in contact, where they are small.
-pub fn window(shown: &SystemShown, whole: [Vector<3>; 2]) -> Option<[Vector<3>; 2]> {
+pub fn window(shown: &SystemShown) -> Option<[Vector<3>; 2]> {
     if shown.zones.is_empty() {
         return None;
     }
     let [low, high] = bounds(shown.zones.iter().flatten());
+    let [from, to] = shown.bounds();
     let size = (high - low).max();
-    let square = Vector::<3>::new(size, size, 0.0) * WINDOW;
-    // Not beyond what the whole picture shows.
-    let corners = [(low - square).sup(&whole[0]), (high + square).inf(&whole[1])];
-    let extent = shown.bounds();
-    (size > 0.0 && (1.0 + 2.0 * WINDOW) * size < SMALL * (extent[1] - extent[0]).max()).then_some(corners)
+    let square = |share: f64| Vector::<3>::new(size, size, 0.0) * share;
+    // Not far beyond the bodies.
+    let corners = [
+        (low - square(WINDOW)).sup(&(from - square(AROUND_SOLIDS))),
+        (high + square(WINDOW)).inf(&(to + square(AROUND_SOLIDS))),
+    ];
+    (size > 0.0 && (1.0 + 2.0 * WINDOW) * size < SMALL * (to - from).max()).then_some(corners.map(flat))
 }
 
 /// Draws all bodies, and where surfaces touch.

@@ -122,7 +122,9 @@ pub fn page_for<'a>(
     let (width, height) = Page::size_for(extent);
     let page = Page::new((width.max(least), height), title, note);
     let inner = page.room();
-    let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
+    // In space the axes stand aside, with their names.
+    let is_plane = towards.x == 0.0 && towards.y == 0.0;
+    let area = if is_plane { inner } else { [inner[0] + 26.0, inner[1], inner[2] - 40.0, inner[3] - 6.0] };
     let camera = Camera::new(towards, above, points, area);
     (page, camera)
 }

@@ -8,6 +8,9 @@ use std::fmt::Write as _;
 /// Room to the left of a chart for its ticks and name, above, to the right, and below.
 const MARGIN: [f64; 4] = [92.0, 12.0, 24.0, 52.0];
 
+/// Ranges as small as this are those of zeros alone.
+const ZERO: f64 = 1e-150;
+
 /// An axis: what it shows from where to where.
 pub struct Axis<'a> {
     pub name: &'a str,
@@ -33,7 +36,7 @@ impl<'a> Axis<'a> {
     pub fn from_zero(name: &'a str, (low, high): (f64, f64)) -> Self {
         let (low, high) = match (low.min(0.0), high.max(0.0)) {
             // Of nothing but zeros.
-            (low, high) if high - low < f64::MIN_POSITIVE.sqrt() => (0.0, 1.0),
+            (low, high) if high - low <= ZERO => (0.0, 1.0),
             range => rounded_range(range),
         };
         let pad = 0.06 * (high - low);

@@ -23,6 +23,8 @@ const FINE: usize = 8;
 const INWARDS: f64 = 1e-3;
 /// What is seen around the zone of contact, as a part of its size.
 const AROUND: f64 = 0.25;
+/// The least size of a zone there, as a part of that of the surface.
+const SMALLEST: f64 = 0.1;
 
 /// Pressure on a surface where it is now, seen from outside. Beyond the rim of contact there is none.
 ///
@@ -96,7 +98,9 @@ impl<'a> Map<'a> {
             return [low, high];
         }
         let [from, to] = bounds(zone.iter());
-        let pad = Vector::<3>::repeat(AROUND * (to - from).max());
+        // A single point has no size.
+        let size = (to - from).max().max(SMALLEST * (high - low).max());
+        let pad = Vector::<3>::repeat(AROUND * size);
         [low.sup(&(from - pad)), high.inf(&(to + pad))]
     }
 

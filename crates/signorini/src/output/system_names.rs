@@ -43,7 +43,7 @@ fn of_solids(page: &mut Page, shown: &SystemShown, camera: &Camera) -> Vec<(f64,
         let beside = width > x.1 - x.0 && x.1 + width + 16.0 < page.room()[2];
         let at = match beside {
             true => (x.1 + 8.0 + 0.5 * width, middle.1),
-            false => Raster::new(fields, &places, camera.area).place(middle),
+            false => Raster::new(fields, &places, camera.area).place(middle, width),
         };
         word(&mut page.svg, at, &fields.name, INK);
         taken.push(at);
@@ -80,12 +80,14 @@ impl Raster {
         out
     }
 
-    /// The middle where it is covered; otherwise the first square that is farthest from all that are not.
-    fn place(&self, middle: (f64, f64)) -> (f64, f64) {
+    /// The middle where a name of this width is on what is covered; otherwise the first square that is farthest from all
+    /// that are not covered.
+    fn place(&self, middle: (f64, f64), width: f64) -> (f64, f64) {
         let [left, top, ..] = self.area;
-        let column = (((middle.0 - left) / SQUARE) as usize).min(self.count[0] - 1);
-        let row = (((middle.1 - top) / SQUARE) as usize).min(self.count[1] - 1);
-        if self.covered[row * self.count[0] + column] {
+        let square = |v: f64, most: usize| ((v.max(0.0) / SQUARE) as usize).min(most - 1);
+        let row = square(middle.1 - top, self.count[1]);
+        let [from, to] = [-0.5, 0.5].map(|side| square(middle.0 + side * width - left, self.count[0]));
+        if (from..=to).all(|column| self.covered[row * self.count[0] + column]) {
             return middle;
         }
         let at = |k: usize| [k % self.count[0], k / self.count[0]].map(|i| i as f64);

@@ -42,6 +42,7 @@ pub mod part;
 pub mod passage;
 pub mod points;
 mod prepare;
+mod rest;
 mod resultants;
 pub mod rigid_body;
 mod rigid_system;

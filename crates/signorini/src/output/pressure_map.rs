@@ -92,15 +92,18 @@ impl<'a> Map<'a> {
     /// The zone of contact with its surroundings, within the surface.
     fn window(&self) -> [Vector<3>; 2] {
         let [low, high] = bounds(self.points.iter());
-        let zone: Vec<Vector<3>> =
-            self.points.iter().zip(&self.active).filter(|(_, closed)| **closed).map(|(x, _)| *x).collect();
+        // Where no rim is known the faces about single points are the zone.
+        let about = self.surface.faces.iter().filter(|list| list.iter().any(|k| self.active[*k as usize])).flatten();
+        let zone: Vec<Vector<3>> = match self.surface.boundary.is_empty() {
+            true => about.map(|k| self.points[*k as usize]).collect(),
+            false => self.points.iter().zip(&self.active).filter(|(_, closed)| **closed).map(|(x, _)| *x).collect(),
+        };
         if zone.is_empty() {
             return [low, high];
         }
         let [from, to] = bounds(zone.iter());
         // A single point has no size.
-        let size = (to - from).max().max(SMALLEST * (high - low).max());
-        let pad = Vector::<3>::repeat(AROUND * size);
+        let pad = Vector::<3>::repeat(AROUND * (to - from).max().max(SMALLEST * (high - low).max()));
         [low.sup(&(from - pad)), high.inf(&(to + pad))]
     }
 
@@ -109,6 +112,10 @@ impl<'a> Map<'a> {
         let rims = self.rims(camera);
         let inner = self.inner();
         let relative: Vec<f64> = self.pressure.iter().map(|p| p / self.most.max(f64::MIN_POSITIVE)).collect();
+        // Without a rim of its own a face is where most of its nodes are; without any such face, where any is.
+        let touching = |list: &[u32]| list.iter().filter(|k| self.active[**k as usize]).count();
+        let is_most = |list: &[u32]| 2 * touching(list) > list.len();
+        let is_known = !rims.is_empty() || self.surface.faces.iter().any(|list| is_most(list));
         let (mut whole, mut free, mut cut) = (Vec::new(), Vec::new(), Cut::new());
         for (list, face) in self.surface.faces.iter().zip(&self.surface.of_face) {
             let Some(&within) = inner.get(face) else {
@@ -117,11 +124,8 @@ impl<'a> Map<'a> {
             };
             match rims.get(face) {
                 Some(rim) => cut.add((list, within), rim, self, &relative, camera),
-                None => {
-                    // Without a rim of its own a face is where most of its nodes are.
-                    let touching = list.iter().filter(|k| self.active[**k as usize]).count();
-                    if 2 * touching > list.len() { &mut whole } else { &mut free }.push(list.as_slice());
-                }
+                None if is_most(list) || (!is_known && touching(list) > 0) => whole.push(list.as_slice()),
+                None => free.push(list.as_slice()),
             }
         }
         let [beyond, inside] = cut.sides(camera);

@@ -7,7 +7,7 @@ mod report;
 use super::audit::system::SystemAudit;
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::Record;
+use super::record::{Record, START};
 use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::system::SystemShown;
@@ -41,6 +41,8 @@ pub struct MechanicsModel {
     state: SystemState,
     last: Option<SystemShown>,
     film: Film<Frame>,
+    /// Whether the state at t = 0 is that of rest.
+    rests: bool,
     /// Why there is no state after it.
     failure: Option<String>,
     /// What the last increment came to, and what checks it.
@@ -102,6 +104,7 @@ struct Failure {
 impl MechanicsModel {
     pub fn new(plan: MechanicsPlan) -> Self {
         let state = plan.system.start();
+        let rests = plan.times.first().is_some_and(|t| *t > 0.0) && rests(&plan, &state);
         let mut film = Film::default();
         film.add(&Frame { time: 0.0, bodies: state.bodies.clone(), zones: Vec::new() });
         Self {
@@ -109,6 +112,7 @@ impl MechanicsModel {
             state,
             last: None,
             film,
+            rests,
             failure: None,
             result: IncrementResult::default(),
             audit: SystemAudit::default(),
@@ -201,6 +205,26 @@ impl MechanicsModel {
         }
     }
 
+    /// Writes the bodies at rest, at t = 0.
+    fn write_start(&self, record: &mut Record) -> Result<(), OutputError> {
+        let shown = SystemShown::of_bodies(&self.plan, &self.plan.system.start().bodies);
+        let fields = system_files::vtu(&shown.bodies, record.units.as_ref())?;
+        record.folder.write(&format!("fields/fields_{START}.vtu"), &fields)?;
+        self.write_rigid(&record.folder, &shown, START)?;
+        let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name()).collect();
+        record.add_frame(0.0, START.into(), &names)
+    }
+
+    /// Writes the rigid bodies of a state, and returns their names.
+    fn write_rigid(&self, folder: &Folder, shown: &SystemShown, number: &str) -> Result<Vec<String>, OutputError> {
+        let mut names = Vec::new();
+        for (name, file) in system_files::rigid_files(&self.plan, shown)? {
+            folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
+            names.push(name);
+        }
+        Ok(names)
+    }
+
     /// What an error of the solver means, and what to try.
     fn failed(&self, error: &IncrementError, residuals: Vec<f64>) -> Failure {
         let has = |which: fn(&Kind) -> bool| self.plan.kinds.iter().any(which);
@@ -256,6 +280,14 @@ impl MechanicsModel {
     }
 }
 
+/// Whether solids are at rest at t = 0, with nothing but rigid bodies about them.
+fn rests(plan: &MechanicsPlan, start: &SystemState) -> bool {
+    let is_of_solids = plan.kinds.iter().all(|kind| matches!(kind, Kind::Solid | Kind::Rigid { is_free: false, .. }));
+    let found = is_of_solids && plan.system.rests(start, 0.0).unwrap_or(false);
+    // What has no value at t = 0 does not matter yet.
+    plan.wrong.take(&plan.head.problem).is_none() && found
+}
+
 /// An increment that is given up, with what went wrong before.
 fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
     let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
@@ -285,6 +317,10 @@ impl Model for MechanicsModel {
 
     fn time(&self, index: usize) -> f64 {
         self.plan.times[index]
+    }
+
+    fn begins_at_rest(&self) -> bool {
+        self.rests
     }
 
     fn advance(
@@ -350,6 +386,9 @@ impl Model for MechanicsModel {
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
+        if self.rests && record.frames.is_empty() {
+            self.write_start(record)?;
+        }
         let units = record.units.clone();
         let number = format!("{index:05}");
         let folder = &record.folder;
@@ -364,11 +403,7 @@ impl Model for MechanicsModel {
                 folder.write(&format!("contact/{name}_{number}_outline.csv"), outline.as_bytes())?;
             }
         }
-        let mut rigid = Vec::new();
-        for (name, file) in system_files::rigid_files(&self.plan, shown)? {
-            folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
-            rigid.push(name);
-        }
+        let rigid = self.write_rigid(folder, shown, &number)?;
         let mut volumes = Vec::new();
         for (body, state) in self.plan.system.bodies.iter().zip(&self.state.bodies) {
             if let Some(samples) = body.samples(state) {
@@ -396,7 +431,7 @@ impl Model for MechanicsModel {
             ..SystemShown::of_bodies(&self.plan, &frame.bodies)
         };
         let frames: Vec<SystemShown> = self.film.frames().iter().map(frame).collect();
-        system_pictures::draw(&record.folder, &self.plan, shown, frames, &record.steps)
+        system_pictures::draw(&record.folder, &self.plan, shown, frames, &record.history(self.rests))
     }
 
     fn first_picture(&self) -> Option<String> {

@@ -77,7 +77,7 @@ pub use points::{
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;
-pub use shown_surface::ShownSurface;
+pub use shown_surface::{SharedSite, ShownSurface};
 pub use simpler::SimplerFriction;
 pub use site_result::{OfSurface, SiteResult};
 pub use stability::{Stability, Unstable};

@@ -21,6 +21,19 @@ pub struct ShownSurface {
     pub boundary_face: Vec<usize>,
     /// In the plane, the intervals in contact.
     pub intervals: Vec<[Point<3>; 2]>,
+    /// Sites without an equation of their own.
+    pub shared: Vec<SharedSite>,
+}
+
+/// A site that touches where another one does, such as one on a support or on the axis of rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedSite {
+    pub site: u32,
+    pub with: u32,
+    /// The recovered pressure there.
+    pub pressure: f64,
+    /// Whether no area belongs to it: it lies on the axis.
+    pub weightless: bool,
 }
 
 impl ShownSurface {

@@ -2,7 +2,7 @@
 
 use super::force::Assembly;
 use super::measure::{Matched, NodeMeasure, Opposite, Sides};
-use super::shown::{show, zone_of};
+use super::shown::{shared_of, show, zone_of};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
@@ -206,8 +206,10 @@ impl Interaction for Mortar {
     fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         let found = self.found(at, own.multipliers)?;
         let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
-        let zone = zone_of(&self.nodes, slave.faces().0, (&found.cover, &found.pairs), &results);
-        Ok(self.nodes.faces().map(|faces| faces.with_zone(&zone, slave)))
+        let points = (&found.cover, &found.pairs[..]);
+        let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
+        let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
+        Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
     }
 
     /// Solids see each other only where they face each other: what a step takes through a rigid body is followed.

@@ -3,10 +3,11 @@
 
 use super::cover::{Cover, Nodes};
 use crate::pair::Pair;
+use crate::shown_surface::SharedSite;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
 use signorini_contact::{
-    ContactSurface, ContactZone, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
+    ContactSurface, ContactZone, Given, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
 };
 
 /// The points of the slave side, and of each what it met, face by face.
@@ -35,6 +36,32 @@ pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, resul
         (Nodes::Space(nodes), Faces::Space(faces)) => zone(faces, nodes, &points, &states),
         _ => ContactZone::default(),
     }
+}
+
+/// The nodes that gave their function to another one, with their pressures.
+pub(super) fn shared_of(
+    nodes: &Nodes,
+    faces: Faces<'_>,
+    points: Points<'_>,
+    results: &[SiteResult],
+) -> Vec<SharedSite> {
+    let given = &points.0.given;
+    if given.is_empty() {
+        return Vec::new();
+    }
+    let Carrying { points, multiplier, active, .. } = Carrying::new(points, results);
+    let pressure = match (nodes, faces) {
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => recovered(faces, nodes, &points, &multiplier, &active, given),
+        (Nodes::Space(nodes), Faces::Space(faces)) => recovered(faces, nodes, &points, &multiplier, &active, given),
+        _ => return Vec::new(),
+    };
+    let shared = |g: &Given| SharedSite {
+        site: g.from,
+        with: g.to,
+        pressure: pressure[g.from as usize],
+        weightless: g.weightless,
+    };
+    given.iter().map(shared).collect()
 }
 
 /// What carries: points and nodes of the slave side.

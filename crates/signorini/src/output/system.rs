@@ -10,7 +10,9 @@ use crate::report::vector;
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
-use signorini_mechanics::{BodyFields, BodyState, IncrementResult, ShownSurface, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{
+    BodyFields, BodyState, IncrementResult, SharedSite, ShownSurface, SiteResult, SystemState, rigid_body,
+};
 use signorini_paths::darboux::{Darboux, of_points};
 use std::sync::Arc;
 
@@ -285,12 +287,31 @@ fn add_faces(fields: &mut Fields, surface: &ShownSurface, in_space: bool) {
         (true, _) => CellShape::Quadrilateral,
     };
     fields.cells = surface.faces.iter().map(|f| (Some(shape(f.len())), f.clone())).collect();
+    surface.shared.iter().for_each(|shared| share(fields, shared));
     let Some(gap) = fields.arrays.iter_mut().find(|array| array.name == "gap") else { return };
     for face in &surface.faces {
         let known = face.iter().map(|&k| gap.values[k as usize]).find(|g| g.is_finite());
         for &k in face {
             let own = &mut gap.values[k as usize];
             *own = if own.is_nan() { known.unwrap_or(f64::NAN) } else { *own };
+        }
+    }
+}
+
+/// Shows a point that touches where another one does, with the same part of the friction that is available.
+fn share(fields: &mut Fields, shared: &SharedSite) {
+    let [to, from] = [shared.site, shared.with].map(|k| k as usize);
+    let pressure = fields.array("contact_pressure").map_or(0.0, |p| p[from]);
+    let gain = if shared.weightless || pressure == 0.0 { 0.0 } else { shared.pressure / pressure };
+    for array in &mut fields.arrays {
+        match array.name {
+            "contact_pressure" => array.values[to] = shared.pressure,
+            "friction_traction" => (0..3).for_each(|i| array.values[3 * to + i] = gain * array.values[3 * from + i]),
+            "friction_utilisation" if shared.weightless => {}
+            "gap" | "contact_status" | "friction_status" | "friction_utilisation" => {
+                array.values[to] = array.values[from]
+            }
+            _ => {}
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
+mod frame;
 pub(crate) mod recovered;
 mod report;
 
@@ -16,10 +17,10 @@ use crate::plan::Head;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::{CaseError, Space};
 use crate::report::{ForceBounds, Reason, StepReport};
+use frame::{Frame, take};
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_geometry::Vector;
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
+use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -48,50 +49,6 @@ pub struct MechanicsModel {
     /// What the last increment came to, and what checks it.
     result: IncrementResult,
     audit: SystemAudit,
-}
-
-/// What a frame of the film shows: the bodies as they are, and in the plane the intervals in contact.
-#[derive(Clone)]
-struct Frame {
-    time: f64,
-    bodies: Vec<BodyState>,
-    zones: Vec<[Vector<3>; 2]>,
-}
-
-impl Frame {
-    fn file(index: usize) -> String {
-        format!("{}/frame_{index:05}.json", checkpoint::BESIDE)
-    }
-
-    /// Writes the frame of an increment beside the checkpoint.
-    fn write(&self, folder: &Folder, index: usize) -> Result<(), OutputError> {
-        let bodies: Vec<[&[f64]; 2]> = self.bodies.iter().map(|b| [&b.configuration[..], &b.internal[..]]).collect();
-        let zones: Vec<[[f64; 3]; 2]> = self.zones.iter().map(|ends| ends.map(Into::into)).collect();
-        let text = json!({"time": self.time, "bodies": bodies, "zones": zones}).to_string();
-        folder.write(&Self::file(index), text.as_bytes())
-    }
-
-    /// The frames of the increments before one; without pictures there are none. None where one is damaged.
-    fn read_all(folder: &Path, next: usize) -> Option<Vec<Frame>> {
-        let texts = (0..next).filter_map(|index| std::fs::read_to_string(folder.join(Self::file(index))).ok());
-        let frame = |text: String| {
-            let mut value: Value = serde_json::from_str(&text).ok()?;
-            let bodies: Vec<[Vec<f64>; 2]> = take(&mut value["bodies"])?;
-            let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
-            let zones: Vec<[[f64; 3]; 2]> = take(&mut value["zones"])?;
-            Some(Frame {
-                time: value["time"].as_f64()?,
-                bodies: bodies.into_iter().map(body).collect(),
-                zones: zones.into_iter().map(|ends| ends.map(Into::into)).collect(),
-            })
-        };
-        texts.map(frame).collect()
-    }
-}
-
-/// A part of what was saved; none where it is damaged.
-fn take<T: serde::de::DeserializeOwned>(v: &mut Value) -> Option<T> {
-    serde_json::from_value(v.take()).ok()
 }
 
 /// An increment without a state: the reason, what happened in words, and the residuals until then.
@@ -425,12 +382,7 @@ impl Model for MechanicsModel {
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
-        let frame = |frame: &Frame| SystemShown {
-            time: frame.time,
-            zones: frame.zones.clone(),
-            ..SystemShown::of_bodies(&self.plan, &frame.bodies)
-        };
-        let frames: Vec<SystemShown> = self.film.frames().iter().map(frame).collect();
+        let frames: Vec<SystemShown> = self.film.frames().iter().map(|frame| frame.shown(&self.plan)).collect();
         system_pictures::draw(&record.folder, &self.plan, shown, frames, &record.history(self.rests))
     }
 

@@ -154,7 +154,8 @@ pub struct BodyFields {
     pub points: Vec<Point<3>>,
     /// Displacement of each point.
     pub displacement: Vec<Vector<3>>,
-    /// Point numbers of each cell: two make a segment, three a triangle, four a quadrilateral; with eight a hexahedron.
+    /// Point numbers of each cell: two make a segment, three a triangle, four a quadrilateral, eight a
+    /// hexahedron. A tetrahedron is `a b c c d d d d`, a wedge `a b c c d e f f`.
     pub cells: Vec<Vec<u32>>,
     /// Name, number of components, values point by point.
     pub point_data: Vec<(String, usize, Vec<f64>)>,

@@ -8,6 +8,7 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
+use crate::shown_surface::ShownSurface;
 use crate::site_result::{SiteResult, with_rest};
 use crate::stability::{Stability, UnstableMode};
 use crate::system::{AssemblyError, System, SystemState};
@@ -83,7 +84,18 @@ impl System {
         Ok(if rubs { with_rest(found, self.size()) } else { found })
     }
 
-    /// The same, where all that is at the limit of its friction slips.
+    /// The surface of a contact as it is drawn in a state, between the sites of [`System::sites`]; none of what has no faces.
+    ///
+    /// # Errors
+    /// Places that are not there.
+    pub fn surface(&self, contact: usize, state: &SystemState) -> Result<Option<ShownSurface>, IncrementError> {
+        let (first, _) = self.numbering();
+        let own = self.own(state)[contact];
+        let found = self.contacts[contact].surface(self.bodies_in(state, &first), own);
+        Ok(found.map_err(AssemblyError::from)?)
+    }
+
+    /// The sites of a contact, where all that is at the limit of its friction slips.
     pub(crate) fn sites_at_limit(
         &self,
         contact: usize,

@@ -14,6 +14,7 @@ use crate::contact::Contact;
 use crate::inside::{self, Inside};
 use crate::part::Part;
 use crate::points::Placed;
+use crate::shown_surface::ShownSurface;
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use signorini_contact::{Law, Status};
@@ -170,6 +171,15 @@ pub trait Interaction: Send + Sync {
     /// # Errors
     /// Bodies that cannot be tested or touched.
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError>;
+
+    /// The surface of the first body as it is drawn in a state, between the points of [`Interaction::results`]; none of what
+    /// has no faces.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn surface(&self, _at: Bodies<'_>, _own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+        Ok(None)
+    }
 
     /// The prediction with which an increment starts.
     fn prediction(&self) -> Vec<f64> {

@@ -34,6 +34,7 @@ pub mod testing {
     pub use crate::output::membrane_map::{FREE, Field, fill};
     pub use crate::output::page::{Scale, sheet};
     pub use crate::output::panel::{Axis, Panel};
+    pub use crate::output::pressure_map::{directed, distance};
     pub use crate::output::render::{Body, Look, Paint, render};
     pub use crate::paths::output::{Line, LinePoint};
     pub use crate::paths::picture::Cover;

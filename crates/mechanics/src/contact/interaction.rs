@@ -10,10 +10,11 @@ use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target
 use crate::pair::Stuck;
 use crate::part::Part;
 use crate::points::{MaterialPoint, Sampling, Site};
+use crate::shown_surface::{ShownSurface, between_sites};
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
 use signorini_contact::Law;
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 
 impl<'a> Bodies<'a> {
     pub(crate) fn sides(&self, contact: &Contact) -> Sides<'a> {
@@ -150,6 +151,17 @@ impl Interaction for Contact {
 
     fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
         self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
+    }
+
+    fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+        let (body, state) = at.side(&self.slave);
+        if self.sampling != Sampling::Nodes {
+            return Ok(None);
+        }
+        let Some(surface) = body.surface(self.slave.group.as_deref(), state) else { return Ok(None) };
+        let start = body.start();
+        let rest: Vec<Point<3>> = self.sites.iter().map(|site| body.placed(&start, site).x).collect();
+        Ok(between_sites(surface.as_ref(), &rest, &self.results(at, own)?))
     }
 
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {

@@ -5,6 +5,7 @@
 //! that are covered completely are then always the same.
 
 use super::facing::Facing;
+use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
     ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
@@ -71,6 +72,14 @@ impl Nodes {
         match self {
             Nodes::Plane(nodes) => places(nodes),
             Nodes::Space(nodes) => places(nodes),
+        }
+    }
+
+    /// The flat faces between the nodes.
+    pub fn faces(&self) -> Option<ShownSurface> {
+        match self {
+            Nodes::Plane(nodes) => ShownSurface::new(nodes, &Some),
+            Nodes::Space(nodes) => ShownSurface::new(nodes, &Some),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::force::Assembly;
 use super::measure::{Matched, NodeMeasure, Opposite, Sides};
-use super::shown::show;
+use super::shown::{shared_of, show, zone_of};
 use super::small::{Measured, SmallSliding};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
@@ -13,6 +13,7 @@ use crate::pair::{AxisChoice, Pair, any_tangent};
 use crate::part::Part;
 use crate::passage::{Tested, share_of_way};
 use crate::points::{MaterialPoint, Placed};
+use crate::shown_surface::ShownSurface;
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
 use signorini_contact::law::Projected;
@@ -207,6 +208,15 @@ impl Interaction for Mortar {
 
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         Ok(self.node_results(&self.found(at, own.multipliers)?))
+    }
+
+    fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+        let found = self.found(at, own.multipliers)?;
+        let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
+        let points = (&found.cover, &found.pairs[..]);
+        let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
+        let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
+        Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
     }
 
     /// Solids see each other only where they face each other: what a step takes through a rigid body is followed.

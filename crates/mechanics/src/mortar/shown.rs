@@ -3,9 +3,12 @@
 
 use super::cover::{Cover, Nodes};
 use crate::pair::Pair;
+use crate::shown_surface::SharedSite;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
-use signorini_contact::{ContactSurface, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone};
+use signorini_contact::{
+    ContactSurface, ContactZone, Given, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
+};
 
 /// The points of the slave side, and of each what it met, face by face.
 type Points<'a> = (&'a Cover, &'a [Vec<Option<Pair>>]);
@@ -25,6 +28,88 @@ pub(super) fn show(
     }
 }
 
+/// The zone of contact of nodes with these results.
+pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, results: &[SiteResult]) -> ContactZone {
+    let Carrying { points, states, .. } = Carrying::new(points, results);
+    match (nodes, faces) {
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => zone(faces, nodes, &points, &states),
+        (Nodes::Space(nodes), Faces::Space(faces)) => zone(faces, nodes, &points, &states),
+        _ => ContactZone::default(),
+    }
+}
+
+/// The nodes that gave their function to another one, with their pressures.
+pub(super) fn shared_of(
+    nodes: &Nodes,
+    faces: Faces<'_>,
+    points: Points<'_>,
+    results: &[SiteResult],
+) -> Vec<SharedSite> {
+    let given = &points.0.given;
+    if given.is_empty() {
+        return Vec::new();
+    }
+    let Carrying { points, multiplier, active, .. } = Carrying::new(points, results);
+    let pressure = match (nodes, faces) {
+        (Nodes::Plane(nodes), Faces::Plane(faces)) => recovered(faces, nodes, &points, &multiplier, &active, given),
+        (Nodes::Space(nodes), Faces::Space(faces)) => recovered(faces, nodes, &points, &multiplier, &active, given),
+        _ => return Vec::new(),
+    };
+    let shared = |g: &Given| SharedSite {
+        site: g.from,
+        with: g.to,
+        pressure: pressure[g.from as usize],
+        weightless: g.weightless,
+    };
+    given.iter().map(shared).collect()
+}
+
+/// What carries: points and nodes of the slave side.
+struct Carrying {
+    points: Vec<Pressed>,
+    multiplier: Vec<f64>,
+    active: Vec<bool>,
+    states: Vec<NodeState>,
+    /// Where the area about a node without a function of its own counts.
+    counts_at: Vec<usize>,
+}
+
+fn is_active(result: &SiteResult) -> bool {
+    result.status != Status::Open
+}
+
+impl Carrying {
+    fn new((cover, pairs): Points<'_>, results: &[SiteResult]) -> Self {
+        let points = (cover.points.iter().flatten().zip(pairs.iter().flatten()))
+            .filter(|(_, pair)| pair.is_some())
+            .map(|(point, _)| {
+                let area = point.shares.iter().map(|(_, share)| share).sum();
+                let force = point.shares.iter().map(|(node, share)| share * results[*node as usize].pressure).sum();
+                Pressed { face: point.face, s: point.s, area, force }
+            })
+            .collect();
+        let state = |r: &SiteResult| match r.gap {
+            None => NodeState::Bare,
+            Some(_) if is_active(r) => NodeState::Active,
+            Some(gap) => NodeState::Open(Some(gap)),
+        };
+        let mut out = Carrying {
+            points,
+            multiplier: results.iter().map(|r| r.pressure).collect(),
+            active: results.iter().map(is_active).collect(),
+            states: results.iter().map(state).collect(),
+            counts_at: (0..results.len()).collect(),
+        };
+        for given in &cover.given {
+            let [from, to] = [given.from as usize, given.to as usize];
+            (out.multiplier[from], out.active[from], out.counts_at[from]) = (out.multiplier[to], out.active[to], to);
+            out.states[from] =
+                if let NodeState::Open(_) = out.states[to] { NodeState::Open(None) } else { out.states[to] };
+        }
+        out
+    }
+}
+
 fn show_on<const D: usize>(
     nodes: &PressureNodes<D>,
     faces: &dyn ContactSurface<D>,
@@ -32,31 +117,7 @@ fn show_on<const D: usize>(
     law: Option<&dyn Law>,
     results: &mut [SiteResult],
 ) {
-    let is_active = |r: &SiteResult| r.status != Status::Open;
-    let points: Vec<Pressed> = (cover.points.iter().flatten().zip(pairs.iter().flatten()))
-        .filter(|(_, pair)| pair.is_some())
-        .map(|(point, _)| {
-            let area = point.shares.iter().map(|(_, share)| share).sum();
-            let force = point.shares.iter().map(|(node, share)| share * results[*node as usize].pressure).sum();
-            Pressed { face: point.face, s: point.s, area, force }
-        })
-        .collect();
-    let mut multiplier: Vec<f64> = results.iter().map(|r| r.pressure).collect();
-    let mut active: Vec<bool> = results.iter().map(is_active).collect();
-    let mut states: Vec<NodeState> = (results.iter())
-        .map(|r| match r.gap {
-            None => NodeState::Bare,
-            Some(_) if is_active(r) => NodeState::Active,
-            Some(gap) => NodeState::Open(Some(gap)),
-        })
-        .collect();
-    // Where the area about a node without a function of its own counts.
-    let mut counts_at: Vec<usize> = (0..results.len()).collect();
-    for given in &cover.given {
-        let [from, to] = [given.from as usize, given.to as usize];
-        (multiplier[from], active[from], counts_at[from]) = (multiplier[to], active[to], to);
-        states[from] = if let NodeState::Open(_) = states[to] { NodeState::Open(None) } else { states[to] };
-    }
+    let Carrying { points, multiplier, active, states, counts_at } = Carrying::new((cover, pairs), results);
     let pressure = recovered(faces, nodes, &points, &multiplier, &active, &cover.given);
     let mut area = vec![0.0; results.len()];
     for (face, whole) in zone(faces, nodes, &points, &states).face_area.into_iter().enumerate() {

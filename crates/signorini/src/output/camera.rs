@@ -154,3 +154,14 @@ impl Camera {
         }
     }
 }
+
+/// The low and the high corner of points.
+pub fn bounds<'a>(points: impl Iterator<Item = &'a Vector<3>>) -> [Vector<3>; 2] {
+    let all = [Vector::<3>::repeat(f64::INFINITY), Vector::<3>::repeat(f64::NEG_INFINITY)];
+    points.fold(all, |[low, high], x| [low.inf(x), high.sup(x)])
+}
+
+/// The corners of a box.
+pub fn corners([low, high]: [Vector<3>; 2]) -> impl Iterator<Item = Vector<3>> {
+    (0..8).map(move |c| Vector::<3>::from_fn(|k, _| [low, high][c >> k & 1][k]))
+}

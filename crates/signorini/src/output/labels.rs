@@ -1,5 +1,6 @@
 //! Names of axes with the units of the case.
 
+use crate::problem::Space;
 use crate::report::UnitNames;
 
 /// The units of a case, where it states any.
@@ -32,5 +33,11 @@ impl Labels {
 
     pub fn pressure(&self, what: &str) -> String {
         self.with(what, |u| &u.pressure)
+    }
+
+    /// What the axes are called.
+    pub fn axes(&self, space: Space) -> [String; 3] {
+        let first = if space == Space::Axisymmetric { "r" } else { "x" };
+        [first, "y", "z"].map(|name| self.length(name))
     }
 }

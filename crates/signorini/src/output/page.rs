@@ -18,6 +18,9 @@ const NOTHING: f64 = 1e-3;
 /// Variations below this part of the size of what varies are those of rounding, and shown as none.
 pub const ROUNDING: f64 = 1e-9;
 
+/// The most width for the caption of a colour bar, beside what is drawn.
+const CAPTION: f64 = 110.0;
+
 pub fn css(c: RGBColor) -> String {
     format!("rgb({},{},{})", c.0, c.1, c.2)
 }
@@ -156,7 +159,14 @@ impl Page {
                 x + 24.0,
             );
         };
-        text(top - 20.0, 15, &escaped(title));
+        // A caption that is too wide has its unit on a line of its own.
+        match title.rsplit_once(" [").filter(|_| text_width(title, 15.0) > CAPTION) {
+            Some((name, unit)) => {
+                text(top - 30.0, 15, &escaped(name));
+                text(top - 13.0, 15, &format!("[{}", escaped(unit)));
+            }
+            None => text(top - 20.0, 15, &escaped(title)),
+        }
         let ends = scale.ends;
         text(bottom + 20.0, 13, &format!("largest {}", three_digits(ends[1])));
         if ends[0].abs() > NOTHING * (ends[1] - ends[0]) && ends[0] < ends[1] {

@@ -8,6 +8,9 @@ use std::fmt::Write as _;
 /// Room to the left of a chart for its ticks and name, above, to the right, and below.
 const MARGIN: [f64; 4] = [92.0, 12.0, 24.0, 52.0];
 
+/// Ranges as small as this are those of zeros alone.
+const ZERO: f64 = 1e-150;
+
 /// An axis: what it shows from where to where.
 pub struct Axis<'a> {
     pub name: &'a str,
@@ -31,7 +34,11 @@ impl<'a> Axis<'a> {
 
     /// From zero to a little above the largest value, or from a little below the smallest to zero, or both.
     pub fn from_zero(name: &'a str, (low, high): (f64, f64)) -> Self {
-        let (low, high) = rounded_range((low.min(0.0), high.max(0.0)));
+        let (low, high) = match (low.min(0.0), high.max(0.0)) {
+            // Of nothing but zeros.
+            (low, high) if high - low <= ZERO => (0.0, 1.0),
+            range => rounded_range(range),
+        };
         let pad = 0.06 * (high - low);
         let low = if low < 0.0 { low - pad } else { low };
         Axis { name, range: (low, if high > 0.0 { high + pad } else { high }), log: false }

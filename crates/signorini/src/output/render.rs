@@ -214,6 +214,15 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
     Ok(image)
 }
 
+/// Puts the raster of bodies into a page.
+///
+/// # Errors
+/// A page without area.
+pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) -> Result<(), OutputError> {
+    let [left, top, right, bottom] = camera.area;
+    render(bodies, camera, look)?.insert(out, (left, right), (top, bottom))
+}
+
 /// Puts a body into a layer wherever it is in front.
 fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, look: Look) {
     let (dense, samples) = density(look);

@@ -1,16 +1,22 @@
-//! Rigid bodies as files for ParaView: their surface around the solids, in the plane their edge.
+//! Rigid bodies as files for ParaView: their surface, in the plane their edge.
 
 use super::OutputError;
 use super::level::{region, surface};
 use super::page::ROUNDING;
-use super::solid_state::Gap;
 use super::vtk::to_bytes;
+use signorini_contact::GapJet;
 use signorini_geometry::Vector;
 use vtkio::model::{DataSet, PolyDataPiece, VertexNumbers};
 
-#[doc(hidden)]
-pub fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {
-    let (points, cells) = if D == 3 {
+/// The distance to a rigid body, negative inside.
+pub type Gap<'a> = &'a (dyn Fn(&Vector<3>) -> GapJet<3> + Sync);
+
+/// A VTP of a rigid body within a box, which has no extent along z in the plane.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn file(gap: Gap<'_>, corners: [Vector<3>; 2], in_space: bool) -> Result<Vec<u8>, OutputError> {
+    let (points, cells) = if in_space {
         let (points, _, triangles) = surface(gap, corners);
         (points, triangles.iter().map(|t| t.to_vec()).collect())
     } else {
@@ -28,7 +34,7 @@ pub fn file<const D: usize>(gap: &Gap, corners: [Vector<3>; 2]) -> Result<Vec<u8
         points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
         ..PolyDataPiece::default()
     };
-    if D == 3 {
+    if in_space {
         piece.polys = topology
     } else {
         piece.lines = topology

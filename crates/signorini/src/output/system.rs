@@ -1,14 +1,18 @@
 //! A state of a system of bodies as it is shown: fields of the bodies, points of the contacts.
 
-use crate::fields::{FieldArray, Fields};
+use super::body_fields::{of_body, of_solid};
+use super::camera::bounds;
+use crate::fields::Fields;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
-use crate::problem::Body;
+use crate::problem::{Body, Space};
 use crate::report::Carried;
 use crate::report::vector;
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
-use signorini_mechanics::{BodyFields, BodyState, IncrementResult, SiteResult, SystemState, rigid_body};
+use signorini_mechanics::{
+    BodyFields, BodyState, IncrementResult, SharedSite, ShownSurface, SiteResult, SystemState, rigid_body,
+};
 use signorini_paths::darboux::{Darboux, of_points};
 use std::sync::Arc;
 
@@ -48,11 +52,12 @@ pub struct RigidShown {
     pub is_free: bool,
 }
 
-/// A contact as it is shown: its tested points.
+/// A contact as it is shown: its tested points, and the surface between them where it has one.
 #[derive(Clone)]
 pub struct ContactShown {
     pub fields: Fields,
     pub carries: Carried,
+    pub surface: Option<ShownSurface>,
 }
 
 /// A state as it is shown.
@@ -63,23 +68,36 @@ pub struct SystemShown {
     pub contacts: Vec<ContactShown>,
     pub curves: Vec<CurveShown>,
     pub rigid: Vec<RigidShown>,
+    /// In the plane, the intervals of surfaces that touch.
+    pub zones: Vec<[Vector<3>; 2]>,
 }
 
 impl SystemShown {
     pub fn new(plan: &MechanicsPlan, state: &SystemState, result: &IncrementResult, time: f64) -> Self {
         let mut shown = SystemShown { time, ..Self::of_bodies(plan, &state.bodies) };
-        for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
-            let fields = of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve);
-            let carries = tested.carries;
-            shown.contacts.push(ContactShown { fields, carries });
+        let contacts = plan.system.contacts.iter().zip(&plan.contacts);
+        for (number, ((contact, tested), sites)) in contacts.zip(&result.sites).enumerate() {
+            let surface = plan.system.surface(number, state).ok().flatten();
+            let mut fields = of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve);
+            if let Some(surface) = &surface {
+                add_faces(&mut fields, surface, plan.space == Space::ThreeD);
+                shown.zones.extend(&surface.intervals);
+            }
+            shown.contacts.push(ContactShown { fields, carries: tested.carries, surface });
         }
         shown
     }
 
     /// The bodies without their contacts.
     pub fn of_bodies(plan: &MechanicsPlan, state: &[BodyState]) -> Self {
-        let mut shown =
-            SystemShown { time: 0.0, bodies: Vec::new(), contacts: Vec::new(), curves: Vec::new(), rigid: Vec::new() };
+        let mut shown = SystemShown {
+            time: 0.0,
+            bodies: Vec::new(),
+            contacts: Vec::new(),
+            curves: Vec::new(),
+            rigid: Vec::new(),
+            zones: Vec::new(),
+        };
         for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(state) {
             match kind {
                 Kind::Curve { radius } => {
@@ -88,7 +106,7 @@ impl SystemShown {
                     shown.curves.push(CurveShown { is_rope, ..curve(body.name(), *radius, &fields) });
                     shown.bodies.push(of_body(body.name(), &fields));
                 }
-                Kind::Solid | Kind::Cells => shown.bodies.push(of_body(body.name(), &body.fields(state))),
+                Kind::Solid | Kind::Cells => shown.bodies.push(of_solid(body.name(), &body.fields(state))),
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
@@ -131,7 +149,31 @@ impl SystemShown {
             let pad = Vector::<3>::repeat(0.5 * r.size);
             points.extend([r.centre - pad, r.centre + pad]);
         }
-        super::solid_state::bounds(points.iter())
+        bounds(points.iter())
+    }
+
+    /// Whether it is solids alone that are shown, with rigid bodies that are where they were put.
+    pub fn is_of_solids(&self) -> bool {
+        self.curves.is_empty() && self.solids().next().is_some()
+    }
+
+    /// Takes displacements this many times as large.
+    pub fn magnify(&mut self, factor: f64) {
+        let arrays = self.bodies.iter_mut().flat_map(|body| &mut body.arrays);
+        let displacements = arrays.filter(|array| array.name == "displacement");
+        displacements.flat_map(|array| &mut array.values).for_each(|u| *u *= factor);
+    }
+
+    /// The largest displacement of solids.
+    pub fn largest_displacement(&self) -> f64 {
+        let list = self.solids().filter_map(|body| body.array("displacement"));
+        list.flat_map(|u| u.chunks(3)).map(|u| Vector::<3>::from_column_slice(u).norm()).fold(0.0, f64::max)
+    }
+
+    /// The corners of the box of solids before they deform.
+    pub fn bounds_at_rest(&self) -> [Vector<3>; 2] {
+        let points: Vec<Vector<3>> = self.solids().flat_map(|b| &b.points).map(|x| Vector::<3>::from(*x)).collect();
+        bounds(points.iter())
     }
 
     /// The same with room for rigid bodies around.
@@ -186,50 +228,6 @@ fn curve(name: &str, radius: f64, fields: &BodyFields) -> CurveShown {
     }
 }
 
-/// Names of arrays as files of fields have them.
-const NAMES: [&str; 8] =
-    ["tension", "axial_force", "shear_force", "torque", "bending_moment", "arc_length", "element", "von_mises"];
-/// What solids call their stress, and what files of fields do.
-pub(super) const STRESS: [&str; 2] = ["stress", "stress_xx_yy_zz_xy_yz_xz"];
-
-fn of_body(name: &str, fields: &BodyFields) -> Fields {
-    let shape = |corners: usize| match corners {
-        2 => Some(CellShape::Line),
-        3 => Some(CellShape::Triangle),
-        4 => Some(CellShape::Quadrilateral),
-        8 => Some(CellShape::Hexahedron),
-        _ => None,
-    };
-    let mut out = Fields {
-        name: name.into(),
-        points: fields.points.iter().map(vector).collect(),
-        cells: fields.cells.iter().map(|c| (shape(c.len()), c.clone())).collect(),
-        arrays: Vec::new(),
-    }
-    .vector("displacement", fields.displacement.iter().flat_map(vector).collect());
-    let known = |name: &str| if name == STRESS[0] { Some(STRESS[1]) } else { NAMES.into_iter().find(|n| *n == name) };
-    for (name, components, values) in &fields.point_data {
-        if let Some(name) = known(name) {
-            out.arrays.push(FieldArray { name, components: *components, values: values.clone() });
-        }
-    }
-    // Values of cells as means of those around each point.
-    for (name, components, values) in &fields.cell_data {
-        let Some(name) = known(name) else { continue };
-        let mut sums = vec![0.0; fields.points.len() * components];
-        let mut counts = vec![0.0f64; fields.points.len()];
-        for (cell, own) in fields.cells.iter().zip(values.chunks(*components)) {
-            for &p in cell {
-                counts[p as usize] += 1.0;
-                own.iter().enumerate().for_each(|(k, v)| sums[p as usize * components + k] += v);
-            }
-        }
-        let values = sums.iter().enumerate().map(|(k, s)| s / counts[k / components].max(1.0)).collect();
-        out.arrays.push(FieldArray { name, components: *components, values });
-    }
-    out
-}
-
 /// The tested points of a contact. Of a curve, neighbours are joined by lines, and its curvature is told along and across
 /// the normal of what it touches.
 fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> Fields {
@@ -278,6 +276,44 @@ fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> F
         }
     }
     fields
+}
+
+/// The faces of a surface between the tested points. Points without a gap of their own, such as those on a support, take
+/// that of a neighbour.
+fn add_faces(fields: &mut Fields, surface: &ShownSurface, in_space: bool) {
+    let shape = |corners: usize| match (in_space, corners) {
+        (false, _) => CellShape::Line,
+        (true, 3) => CellShape::Triangle,
+        (true, _) => CellShape::Quadrilateral,
+    };
+    fields.cells = surface.faces.iter().map(|f| (Some(shape(f.len())), f.clone())).collect();
+    surface.shared.iter().for_each(|shared| share(fields, shared));
+    let Some(gap) = fields.arrays.iter_mut().find(|array| array.name == "gap") else { return };
+    for face in &surface.faces {
+        let known = face.iter().map(|&k| gap.values[k as usize]).find(|g| g.is_finite());
+        for &k in face {
+            let own = &mut gap.values[k as usize];
+            *own = if own.is_nan() { known.unwrap_or(f64::NAN) } else { *own };
+        }
+    }
+}
+
+/// Shows a point that touches where another one does, with the same part of the friction that is available.
+fn share(fields: &mut Fields, shared: &SharedSite) {
+    let [to, from] = [shared.site, shared.with].map(|k| k as usize);
+    let pressure = fields.array("contact_pressure").map_or(0.0, |p| p[from]);
+    let gain = if shared.weightless || pressure == 0.0 { 0.0 } else { shared.pressure / pressure };
+    for array in &mut fields.arrays {
+        match array.name {
+            "contact_pressure" => array.values[to] = shared.pressure,
+            "friction_traction" => (0..3).for_each(|i| array.values[3 * to + i] = gain * array.values[3 * from + i]),
+            "friction_utilisation" if shared.weightless => {}
+            "gap" | "contact_status" | "friction_status" | "friction_utilisation" => {
+                array.values[to] = array.values[from]
+            }
+            _ => {}
+        }
+    }
 }
 
 /// The frames of the sites of a curve that touch.

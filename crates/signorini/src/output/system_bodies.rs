@@ -1,19 +1,22 @@
 //! Bodies of a system as they are drawn: tubes about ropes and beams, surfaces of solids, rigid bodies.
 
-use super::level::surface;
+use super::colours::{FREE, RIGID};
+use super::level::{OF_HEXAHEDRON, surface};
 use super::page::Scale;
 use super::render::{Body, Paint};
-use super::solid_state::{FREE, RIGID};
-use super::system::{CurveShown, SystemShown, moved};
+use super::system::{CurveShown, RigidShown, SystemShown, moved};
 use crate::fields::Fields;
+use signorini_fem::CellShape;
 use signorini_geometry::Vector;
+use std::collections::BTreeMap;
 
 /// Corners of the polygon that is drawn for a section.
 const AROUND_SECTION: usize = 12;
 /// Curves are drawn at least so thick, as a part of the extent of the picture.
 const THIN: f64 = 0.006;
-/// How much a rigid body hides of what is behind it: those around curves are seen through a little.
+/// How much a rigid body hides of what is behind it: those around curves are seen through a little, those around solids more.
 const VEIL: f64 = 0.75;
+const THIN_VEIL: f64 = 0.4;
 
 /// A tube about a curve, coloured by values at its points from 0 to 1.
 pub fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
@@ -86,60 +89,86 @@ fn at_points(curve: &CurveShown) -> Vec<f64> {
     sums.into_iter().map(|(sum, count)| sum / count.max(1.0)).collect()
 }
 
+/// The corners of the sides of a cell in space, seen from outside counter-clockwise.
+fn sides(shape: Option<CellShape>) -> &'static [&'static [usize]] {
+    match shape {
+        Some(CellShape::Hexahedron) => {
+            &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]]
+        }
+        Some(CellShape::Wedge) => &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]],
+        Some(CellShape::Tetrahedron) => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
+        _ => &[],
+    }
+}
+
 /// The surface of a solid where it is: its cells in the plane, and in space the sides of cells that no other cell has.
 fn solid(fields: &Fields, paint: Paint) -> Body {
-    const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
     let mut polygons: Vec<Vec<u32>> = Vec::new();
-    let mut sides: std::collections::BTreeMap<Vec<[u64; 3]>, Option<Vec<u32>>> = std::collections::BTreeMap::new();
-    // Cells have points of their own: the same places are the same points.
-    let place = |k: u32| fields.points[k as usize].map(|v| (v + 0.0).to_bits());
-    for (_, cell) in &fields.cells {
-        if cell.len() != 8 {
+    let mut once: BTreeMap<Vec<u32>, Option<Vec<u32>>> = BTreeMap::new();
+    for (shape, cell) in &fields.cells {
+        let sides = sides(*shape);
+        if sides.is_empty() {
             polygons.push(cell.clone());
-            continue;
         }
-        for side in SIDES {
-            let mut list: Vec<u32> = side.iter().map(|k| cell[*k]).collect();
-            list.dedup();
-            if list.len() > 1 && list.first() == list.last() {
-                list.pop();
-            }
-            if list.len() < 3 {
-                continue;
-            }
-            let mut key: Vec<[u64; 3]> = list.iter().map(|k| place(*k)).collect();
+        for side in sides {
+            let list: Vec<u32> = side.iter().map(|k| cell[*k]).collect();
+            let mut key = list.clone();
             key.sort_unstable();
-            sides.entry(key).and_modify(|found| *found = None).or_insert(Some(list));
+            once.entry(key).and_modify(|found| *found = None).or_insert(Some(list));
         }
     }
-    polygons.extend(sides.into_values().flatten());
+    polygons.extend(once.into_values().flatten());
     Body::of_polygons(moved(fields), polygons.iter().map(Vec::as_slice), paint)
 }
 
-/// The bodies of a state; in the plane without rigid ones, which are their edges there.
-pub fn bodies(shown: &SystemShown, scale: &Scale, in_space: bool) -> Vec<Body> {
+/// The cells of a solid in space as tetrahedra.
+pub fn tetrahedra(fields: &Fields) -> impl Iterator<Item = [u32; 4]> {
+    const OF_TETRAHEDRON: [[usize; 4]; 1] = [[0, 1, 2, 3]];
+    const OF_WEDGE: [[usize; 4]; 3] = [[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]];
+    fields.cells.iter().flat_map(|(shape, list)| {
+        let parts: &[[usize; 4]] = match shape {
+            Some(CellShape::Hexahedron) => &OF_HEXAHEDRON,
+            Some(CellShape::Wedge) => &OF_WEDGE,
+            Some(CellShape::Tetrahedron) => &OF_TETRAHEDRON,
+            _ => &[],
+        };
+        parts.iter().map(|part| part.map(|k| list[k]))
+    })
+}
+
+/// Ropes and beams.
+fn curves(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
     let [low, high] = shown.bounds();
     let thin = THIN * (high - low).max();
-    let mut out: Vec<Body> = (shown.curves.iter())
-        .map(|c| {
-            let colours: Vec<f64> = at_points(c).iter().map(|f| scale.place(*f)).collect();
-            tube(c, c.radius.max(thin), &colours)
-        })
-        .collect();
-    for fields in shown.solids() {
-        let stress = fields.array("von_mises").filter(|_| shown.curves.is_empty());
-        let paint = match stress {
-            Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
-            None => Paint::Plain(FREE),
-        };
-        out.push(solid(fields, paint));
-    }
-    let room = shown.room();
-    for body in shown.rigid.iter().filter(|_| in_space) {
+    let curve = |c: &CurveShown| {
+        let colours: Vec<f64> = at_points(c).iter().map(|f| scale.place(*f)).collect();
+        tube(c, c.radius.max(thin), &colours)
+    };
+    shown.curves.iter().map(curve).collect()
+}
+
+/// The solids, coloured by their stress where nothing else is coloured.
+pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
+    let paint = |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty()) {
+        Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
+        None => Paint::Plain(FREE),
+    };
+    shown.solids().map(|fields| solid(fields, paint(fields))).collect()
+}
+
+/// The surfaces of rigid bodies in space, within a box.
+pub fn rigid(shown: &SystemShown, room: [Vector<3>; 2]) -> Vec<Body> {
+    let veil = if shown.is_of_solids() { THIN_VEIL } else { VEIL };
+    let sheet = |body: &RigidShown| {
         let (points, normals, triangles) = surface(body.gap.as_ref(), room);
         let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
-        let opacity = if body.is_free { 1.0 } else { VEIL };
-        out.push(Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity });
-    }
-    out
+        let opacity = if body.is_free { 1.0 } else { veil };
+        Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity }
+    };
+    shown.rigid.iter().map(sheet).collect()
+}
+
+/// The bodies that deform.
+pub fn deformable(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
+    curves(shown, scale).into_iter().chain(solids(shown, scale)).collect()
 }

@@ -1,12 +1,13 @@
 //! What contacts of a system carry, as it is drawn: lines of force or traction at the tested points, and charts along them.
 
-use super::camera::Camera;
+use super::camera::{Camera, bounds};
 use super::chart::{label, line, viridis};
+use super::colours::FRONT;
 use super::labels::Labels;
 use super::page::{Page, Sign, three_digits};
 use super::panel::{Axis, Dots, Panel};
-use super::solid_state::FRONT;
 use super::system::{ContactShown, SystemShown};
+use crate::problem::Space;
 use crate::report::Carried;
 use signorini_geometry::Vector;
 
@@ -55,7 +56,36 @@ impl ContactShown {
         self.fields.array("friction_status").is_some_and(|s| s[k] == SLIPS)
     }
 
-    fn at(&self, k: usize) -> Vector<3> {
+    /// Whether a tested point touches.
+    pub fn is_closed(&self, k: usize) -> bool {
+        self.fields.array("contact_status").is_some_and(|s| s[k] > 0.0)
+    }
+
+    /// To where the first body looks, of any length: on the whole where it touches, or everywhere where it touches nothing.
+    pub fn outward(&self) -> Vector<3> {
+        if let Some(normals) = self.face_normals() {
+            return normals;
+        }
+        let Some(normals) = self.fields.array("normal") else { return Vector::<3>::zeros() };
+        let any = (0..self.fields.points.len()).any(|k| self.is_closed(k));
+        let counted = (0..self.fields.points.len()).filter(|&k| !any || self.is_closed(k));
+        -counted.map(|k| Vector::<3>::from_column_slice(&normals[3 * k..3 * k + 3])).sum::<Vector<3>>()
+    }
+
+    /// The area of faces along their normals.
+    fn face_normals(&self) -> Option<Vector<3>> {
+        let faces = &self.surface.as_ref()?.faces;
+        let touches = |face: &&Vec<u32>| face.iter().any(|&k| self.is_closed(k as usize));
+        let any = faces.iter().any(|face| touches(&face));
+        let normal = |face: &Vec<u32>| {
+            let x = |k: usize| self.at(face[k] as usize);
+            (x(1) - x(0)).cross(&(x(face.len() - 1) - x(0)))
+        };
+        Some(faces.iter().filter(|face| !any || touches(face)).map(normal).sum())
+    }
+
+    /// Where a tested point is.
+    pub fn at(&self, k: usize) -> Vector<3> {
         Vector::<3>::from(self.fields.points[k])
     }
 
@@ -69,11 +99,18 @@ impl ContactShown {
     }
 }
 
-/// Draws for every contact what the first body carries, dots where it slips, and tells in a key how much that is.
-pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, labels: &Labels) {
+/// Draws for every contact what the first body carries, dots where it slips, and tells for the key how much that is. The
+/// pressure of surfaces is shown otherwise.
+pub fn draw(
+    page: &mut Page,
+    shown: &SystemShown,
+    camera: &Camera,
+    extent: f64,
+    labels: &Labels,
+) -> Vec<(Sign, String)> {
     let mut key: Vec<(Sign, String)> = Vec::new();
     let mut slips = false;
-    for contact in &shown.contacts {
+    for contact in shown.contacts.iter().filter(|c| c.surface.is_none()) {
         let closed = contact.closed();
         let most = closed.iter().map(|&k| contact.carried(k).norm()).fold(0.0, f64::max);
         if most == 0.0 {
@@ -107,7 +144,7 @@ pub fn draw(page: &mut Page, shown: &SystemShown, camera: &Camera, extent: f64, 
     if slips {
         key.push((Sign::Dot(FRONT), "slips".into()));
     }
-    page.key(&key);
+    key
 }
 
 /// Tested points of a contact in order: how far along they are, and the points; what that length is called.
@@ -116,9 +153,8 @@ struct Order {
     name: String,
 }
 
-/// Points of a curve are in order; those of a surface in the plane are along the axis that they extend along most, or around
-/// their middle where they lie about it.
-fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> {
+/// Points of a curve are in order; those of a surface in the plane are taken along it.
+fn order(contact: &ContactShown, plane: Option<Space>, labels: &Labels) -> Option<Order> {
     let points: Vec<Vector<3>> = (0..contact.fields.points.len()).map(|k| contact.at(k)).collect();
     if !contact.fields.cells.is_empty() && points.len() > 2 {
         let mut length = 0.0;
@@ -130,31 +166,63 @@ fn order(contact: &ContactShown, plane: bool, labels: &Labels) -> Option<Order> 
         return Some(Order { places, name: labels.length("length along the contact points") });
     }
     let closed = contact.closed();
-    if !plane || contact.carries != Carried::Pressure || closed.len() < 3 {
-        return None;
-    }
-    let normals = contact.fields.array("normal")?;
-    let normal = |k: usize| Vector::<3>::from_column_slice(&normals[3 * k..3 * k + 3]);
-    let mean = closed.iter().map(|&k| normal(k)).sum::<Vector<3>>() / closed.len() as f64;
-    let (low, high) = (closed.iter())
-        .fold((points[closed[0]], points[closed[0]]), |(low, high), &k| (low.inf(&points[k]), high.sup(&points[k])));
-    let size = high - low;
-    let one_way = closed.iter().all(|&k| normal(k).dot(&mean) >= ONE_WAY * mean.norm()) && mean.norm() > ONE_WAY;
-    let is_flat = size.x.min(size.y) < FLAT * size.x.max(size.y);
-    let (mut places, name): (Vec<(f64, usize)>, String) = if one_way || is_flat {
-        let axis = usize::from(size.y > size.x);
-        (closed.iter().map(|&k| (points[k][axis], k)).collect(), labels.length(["x", "y"][axis]))
-    } else {
-        let middle = closed.iter().map(|&k| points[k]).sum::<Vector<3>>() / closed.len() as f64;
-        let angle = |x: Vector<3>| (x.y - middle.y).atan2(x.x - middle.x).to_degrees();
-        (closed.iter().map(|&k| (angle(points[k]), k)).collect(), "angle about the centre [°]".into())
-    };
+    let space = plane.filter(|_| contact.carries == Carried::Pressure && closed.len() >= 3)?;
+    let along = Along::of(contact, space, labels);
+    let mut places: Vec<(f64, usize)> = closed.iter().map(|&k| (along.place(&points[k]), k)).collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Some(Order { places, name })
+    Some(Order { places, name: along.name })
+}
+
+/// How far along a surface in the plane something is, and what that is called: along the axis that the points in contact
+/// extend along most, or around their middle where they lie about it.
+pub struct Along {
+    pub name: String,
+    way: Way,
+}
+
+enum Way {
+    Axis(usize),
+    About(Vector<3>),
+}
+
+/// Half a turn.
+const HALF: f64 = 180.0;
+
+impl Along {
+    pub fn of(contact: &ContactShown, space: Space, labels: &Labels) -> Self {
+        let closed = contact.closed();
+        let all: Vec<usize> = if closed.is_empty() { (0..contact.fields.points.len()).collect() } else { closed };
+        let points: Vec<Vector<3>> = all.iter().map(|&k| contact.at(k)).collect();
+        let [low, high] = bounds(points.iter());
+        let (size, count) = (high - low, points.len().max(1) as f64);
+        let normals = contact.fields.array("normal").unwrap_or_default();
+        let normal = |k: usize| Vector::<3>::from_column_slice(&normals[3 * k..3 * k + 3]);
+        let mean = all.iter().map(|&k| normal(k)).sum::<Vector<3>>() / count;
+        let one_way = all.iter().all(|&k| normal(k).dot(&mean) >= ONE_WAY * mean.norm()) && mean.norm() > ONE_WAY;
+        let is_flat = size.x.min(size.y) < FLAT * size.x.max(size.y);
+        if one_way || is_flat || contact.closed().is_empty() {
+            let axis = usize::from(size.y > size.x);
+            return Along { name: labels.axes(space)[axis].clone(), way: Way::Axis(axis) };
+        }
+        let middle = points.iter().sum::<Vector<3>>() / count;
+        Along { name: "angle about the centre [°]".into(), way: Way::About(middle) }
+    }
+
+    pub fn place(&self, x: &Vector<3>) -> f64 {
+        match self.way {
+            Way::Axis(axis) => x[axis],
+            Way::About(middle) => (x.y - middle.y).atan2(x.x - middle.x).to_degrees(),
+        }
+    }
+
+    /// Whether two places near each other are so along the surface too: not where a turn ends.
+    pub fn is_near(&self, [a, b]: &[f64; 2]) -> bool {
+        matches!(self.way, Way::Axis(_)) || (a - b).abs() < HALF
+    }
 }
 
 /// What a contact of a curve, or of a surface in the plane, carries along its tested points; none for others.
-pub fn chart(contact: &ContactShown, plane: bool, time: f64, labels: &Labels) -> Option<String> {
+pub fn chart(contact: &ContactShown, plane: Option<Space>, time: f64, labels: &Labels) -> Option<String> {
     let Order { places, name } = order(contact, plane, labels)?;
     let pressure = contact.fields.array("contact_pressure")?;
     let normal: Vec<(f64, f64)> = places.iter().map(|&(s, k)| (s, pressure[k])).collect();

@@ -1,9 +1,10 @@
 //! Files of a state of a system: its bodies, its contacts and its rigid bodies for ParaView, contacts as tables.
 
 use super::OutputError;
-use super::level::surface;
-use super::system::{STRESS, SystemShown};
-use super::vtk::{to_bytes, with_units};
+use super::body_fields::STRESS;
+use super::rigid;
+use super::system::{RigidShown, SystemShown};
+use super::vtk::with_units;
 use crate::fields::{FieldArray, Fields};
 use crate::plan::mechanics::MechanicsPlan;
 use crate::report::UnitNames;
@@ -65,7 +66,9 @@ pub fn vtu(bodies: &[Fields], units: Option<&UnitNames>) -> Result<Vec<u8>, Outp
         Some(CellShape::Triangle) => CellType::Triangle,
         Some(CellShape::Quadrilateral) => CellType::Quad,
         Some(CellShape::Hexahedron) => CellType::Hexahedron,
-        _ => CellType::Polygon,
+        Some(CellShape::Tetrahedron) => CellType::Tetra,
+        Some(CellShape::Wedge) => CellType::Wedge,
+        None => CellType::Polygon,
     };
     let piece = UnstructuredGridPiece {
         points: all.points.iter().flatten().copied().collect::<Vec<f64>>().into(),
@@ -107,7 +110,7 @@ pub fn vti(samples: &Samples, units: Option<&UnitNames>) -> Result<Vec<u8>, Outp
     with_units("volume", data, units)
 }
 
-/// The tested points of a contact as a VTP.
+/// The tested points of a contact as a VTP, with the faces between them where there are some.
 ///
 /// # Errors
 /// What `vtkio` cannot write.
@@ -121,7 +124,9 @@ pub fn vtp(fields: &Fields, units: Option<&UnitNames>) -> Result<Vec<u8>, Output
         let single: Vec<Vec<u32>> = (0..fields.points.len() as u32).map(|k| vec![k]).collect();
         piece.verts = Some(topology(single.iter()));
     } else {
-        piece.lines = Some(topology(fields.cells.iter().map(|c| &c.1)));
+        let cells = Some(topology(fields.cells.iter().map(|c| &c.1)));
+        let are_lines = fields.cells.iter().all(|c| c.0 == Some(CellShape::Line));
+        *(if are_lines { &mut piece.lines } else { &mut piece.polys }) = cells;
     }
     with_units("contact", DataSet::inline(piece), units)
 }
@@ -152,20 +157,11 @@ pub fn csv(fields: &Fields) -> String {
 /// # Errors
 /// What `vtkio` cannot write.
 pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(String, Vec<u8>)>, OutputError> {
-    if plan.space != crate::problem::Space::ThreeD {
-        return Ok(Vec::new());
+    let in_space = plan.space == crate::problem::Space::ThreeD;
+    let mut room = shown.room();
+    if !in_space {
+        room.iter_mut().for_each(|x| x.z = 0.0);
     }
-    let room = shown.room();
-    (shown.rigid.iter())
-        .map(|body| {
-            let (points, _, triangles) = surface(body.gap.as_ref(), room);
-            let triangles: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
-            let piece = PolyDataPiece {
-                points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
-                polys: Some(topology(triangles.iter())),
-                ..PolyDataPiece::default()
-            };
-            Ok((body.name.clone(), to_bytes("rigid", DataSet::inline(piece))?))
-        })
-        .collect()
+    let file = |body: &RigidShown| Ok((body.name.clone(), rigid::file(body.gap.as_ref(), room, in_space)?));
+    shown.rigid.iter().map(file).collect()
 }

@@ -10,8 +10,8 @@ use crate::output::figure::exact;
 use crate::output::labels::Labels;
 use crate::output::page::{Page, Scale, Sign, text_width};
 use crate::output::panel::{Axis, Panel};
+use crate::output::render::insert;
 use crate::output::render::{Body, Look, Paint};
-use crate::output::solid_state::insert;
 use crate::output::system::CurveShown;
 use crate::output::system_bodies::tube;
 use crate::output::{Folder, OutputError};
@@ -152,7 +152,7 @@ pub fn of_paths(case: &PathCase, surfaces: &[Surface], lines: &[Line]) -> Result
     let seen: Vec<Vector<3>> = (surfaces.iter().flat_map(|s| &s.points).copied())
         .chain(lines.iter().flat_map(|l| l.points.iter().map(|p| p.x)))
         .collect();
-    let bounds = crate::output::solid_state::bounds(seen.iter());
+    let bounds = crate::output::camera::bounds(seen.iter());
     let extent = (bounds[1] - bounds[0]).max();
     let mut bodies: Vec<Body> = Vec::new();
     for (k, surface) in surfaces.iter().enumerate() {

@@ -1,24 +1,26 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
+mod frame;
 pub(crate) mod recovered;
 mod report;
 
 use super::audit::system::SystemAudit;
 use super::checkpoint;
 use super::driver::{Advanced, Model};
-use super::record::Record;
+use super::record::{Record, START};
 use crate::fields::ShownState;
 use crate::output::film::Film;
 use crate::output::system::SystemShown;
-use crate::output::{Folder, OutputError, system_files, system_pictures};
+use crate::output::{Folder, OutputError, system_files, system_pictures, tables};
 use crate::plan::Head;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
-use crate::problem::CaseError;
+use crate::problem::{CaseError, Space};
 use crate::report::{ForceBounds, Reason, StepReport};
+use frame::{Frame, take};
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Saved, Stability, SystemState};
+use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::path::Path;
 
@@ -40,48 +42,13 @@ pub struct MechanicsModel {
     state: SystemState,
     last: Option<SystemShown>,
     film: Film<Frame>,
+    /// Whether the state at t = 0 is that of rest.
+    rests: bool,
     /// Why there is no state after it.
     failure: Option<String>,
     /// What the last increment came to, and what checks it.
     result: IncrementResult,
     audit: SystemAudit,
-}
-
-/// What a frame of the film shows: the bodies as they are.
-#[derive(Clone)]
-struct Frame {
-    time: f64,
-    bodies: Vec<BodyState>,
-}
-
-impl Frame {
-    fn file(index: usize) -> String {
-        format!("{}/frame_{index:05}.json", checkpoint::BESIDE)
-    }
-
-    /// Writes the frame of an increment beside the checkpoint.
-    fn write(&self, folder: &Folder, index: usize) -> Result<(), OutputError> {
-        let bodies: Vec<[&[f64]; 2]> = self.bodies.iter().map(|b| [&b.configuration[..], &b.internal[..]]).collect();
-        let text = json!({"time": self.time, "bodies": bodies}).to_string();
-        folder.write(&Self::file(index), text.as_bytes())
-    }
-
-    /// The frames of the increments before one; without pictures there are none. None where one is damaged.
-    fn read_all(folder: &Path, next: usize) -> Option<Vec<Frame>> {
-        let texts = (0..next).filter_map(|index| std::fs::read_to_string(folder.join(Self::file(index))).ok());
-        let frame = |text: String| {
-            let mut value: Value = serde_json::from_str(&text).ok()?;
-            let bodies: Vec<[Vec<f64>; 2]> = take(&mut value["bodies"])?;
-            let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
-            Some(Frame { time: value["time"].as_f64()?, bodies: bodies.into_iter().map(body).collect() })
-        };
-        texts.map(frame).collect()
-    }
-}
-
-/// A part of what was saved; none where it is damaged.
-fn take<T: serde::de::DeserializeOwned>(v: &mut Value) -> Option<T> {
-    serde_json::from_value(v.take()).ok()
 }
 
 /// An increment without a state: the reason, what happened in words, and the residuals until then.
@@ -94,13 +61,15 @@ struct Failure {
 impl MechanicsModel {
     pub fn new(plan: MechanicsPlan) -> Self {
         let state = plan.system.start();
+        let rests = plan.times.first().is_some_and(|t| *t > 0.0) && rests(&plan, &state);
         let mut film = Film::default();
-        film.add(&Frame { time: 0.0, bodies: state.bodies.clone() });
+        film.add(&Frame { time: 0.0, bodies: state.bodies.clone(), zones: Vec::new() });
         Self {
             plan,
             state,
             last: None,
             film,
+            rests,
             failure: None,
             result: IncrementResult::default(),
             audit: SystemAudit::default(),
@@ -193,6 +162,26 @@ impl MechanicsModel {
         }
     }
 
+    /// Writes the bodies at rest, at t = 0.
+    fn write_start(&self, record: &mut Record) -> Result<(), OutputError> {
+        let shown = SystemShown::of_bodies(&self.plan, &self.plan.system.start().bodies);
+        let fields = system_files::vtu(&shown.bodies, record.units.as_ref())?;
+        record.folder.write(&format!("fields/fields_{START}.vtu"), &fields)?;
+        self.write_rigid(&record.folder, &shown, START)?;
+        let names: Vec<&str> = self.plan.system.contacts.iter().map(|c| c.name()).collect();
+        record.add_frame(0.0, START.into(), &names)
+    }
+
+    /// Writes the rigid bodies of a state, and returns their names.
+    fn write_rigid(&self, folder: &Folder, shown: &SystemShown, number: &str) -> Result<Vec<String>, OutputError> {
+        let mut names = Vec::new();
+        for (name, file) in system_files::rigid_files(&self.plan, shown)? {
+            folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
+            names.push(name);
+        }
+        Ok(names)
+    }
+
     /// What an error of the solver means, and what to try.
     fn failed(&self, error: &IncrementError, residuals: Vec<f64>) -> Failure {
         let has = |which: fn(&Kind) -> bool| self.plan.kinds.iter().any(which);
@@ -248,6 +237,14 @@ impl MechanicsModel {
     }
 }
 
+/// Whether solids are at rest at t = 0, with nothing but rigid bodies about them.
+fn rests(plan: &MechanicsPlan, start: &SystemState) -> bool {
+    let is_of_solids = plan.kinds.iter().all(|kind| matches!(kind, Kind::Solid | Kind::Rigid { is_free: false, .. }));
+    let found = is_of_solids && plan.system.rests(start, 0.0).unwrap_or(false);
+    // What has no value at t = 0 does not matter yet.
+    plan.wrong.take(&plan.head.problem).is_none() && found
+}
+
 /// An increment that is given up, with what went wrong before.
 fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
     let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
@@ -277,6 +274,10 @@ impl Model for MechanicsModel {
 
     fn time(&self, index: usize) -> f64 {
         self.plan.times[index]
+    }
+
+    fn begins_at_rest(&self) -> bool {
+        self.rests
     }
 
     fn advance(
@@ -312,11 +313,11 @@ impl Model for MechanicsModel {
         }
         record.steps.push(step);
         report::warn(&self.plan, [&self.result, &result], &shown, record);
+        if self.plan.head.pictures && self.plan.times.len() > 1 {
+            self.film.add(&Frame { time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() });
+        }
         self.last = Some(shown);
         self.result = result;
-        if self.plan.head.pictures && self.plan.times.len() > 1 {
-            self.film.add(&Frame { time, bodies: self.state.bodies.clone() });
-        }
         // What slips count from next.
         if let Err(error) = self.plan.system.accept(&self.state) {
             let Failure { reason, text, .. } = self.failed(&error, Vec::new());
@@ -342,6 +343,9 @@ impl Model for MechanicsModel {
 
     fn write_fields(&mut self, index: usize, record: &mut Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
+        if self.rests && record.frames.is_empty() {
+            self.write_start(record)?;
+        }
         let units = record.units.clone();
         let number = format!("{index:05}");
         let folder = &record.folder;
@@ -351,12 +355,12 @@ impl Model for MechanicsModel {
             folder
                 .write(&format!("contact/{name}_{number}.vtp"), &system_files::vtp(&contact.fields, units.as_ref())?)?;
             folder.write(&format!("contact/{name}_{number}.csv"), system_files::csv(&contact.fields).as_bytes())?;
+            if let Some(surface) = &contact.surface {
+                let outline = tables::zone_outline(&surface.boundary, self.plan.space == Space::ThreeD);
+                folder.write(&format!("contact/{name}_{number}_outline.csv"), outline.as_bytes())?;
+            }
         }
-        let mut rigid = Vec::new();
-        for (name, file) in system_files::rigid_files(&self.plan, shown)? {
-            folder.write(&format!("rigid/{name}_{number}.vtp"), &file)?;
-            rigid.push(name);
-        }
+        let rigid = self.write_rigid(folder, shown, &number)?;
         let mut volumes = Vec::new();
         for (body, state) in self.plan.system.bodies.iter().zip(&self.state.bodies) {
             if let Some(samples) = body.samples(state) {
@@ -378,10 +382,8 @@ impl Model for MechanicsModel {
 
     fn draw(&self, record: &Record) -> Result<(), OutputError> {
         let Some(shown) = &self.last else { return Ok(()) };
-        let frame =
-            |frame: &Frame| SystemShown { time: frame.time, ..SystemShown::of_bodies(&self.plan, &frame.bodies) };
-        let frames: Vec<SystemShown> = self.film.frames().iter().map(frame).collect();
-        system_pictures::draw(&record.folder, &self.plan, shown, &frames, &record.steps)
+        let frames: Vec<SystemShown> = self.film.frames().iter().map(|frame| frame.shown(&self.plan)).collect();
+        system_pictures::draw(&record.folder, &self.plan, shown, frames, &record.history(self.rests))
     }
 
     fn first_picture(&self) -> Option<String> {
@@ -408,8 +410,9 @@ impl Model for MechanicsModel {
     }
 
     fn save(&self, folder: &Folder, next: usize) -> Result<Option<Value>, OutputError> {
-        if let Some(time) = self.last.as_ref().filter(|_| self.plan.head.pictures).map(|shown| shown.time) {
-            Frame { time, bodies: self.state.bodies.clone() }.write(folder, next - 1)?;
+        if let Some(shown) = self.last.as_ref().filter(|_| self.plan.head.pictures) {
+            let frame = Frame { time: shown.time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() };
+            frame.write(folder, next - 1)?;
         }
         let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({

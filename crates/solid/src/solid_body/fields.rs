@@ -138,51 +138,96 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
-/// Points of a reference cell and the straight cells between them, `n` along each edge.
+/// Points of a reference cell and the straight cells between them, `n` along each edge; of a tetrahedron at most two.
 fn divided(shape: CellShape, n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
-    let vertices = || shape.vertices().to_vec();
-    let mut cells = Vec::new();
     match shape {
-        CellShape::Tetrahedron => (vertices(), vec![vec![0, 1, 2, 2, 3, 3, 3, 3]]),
-        CellShape::Wedge => (vertices(), vec![vec![0, 1, 2, 2, 3, 4, 5, 5]]),
-        CellShape::Triangle => {
-            let share = |k: usize| k as f64 / n as f64;
-            let points = (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect();
-            let at = |i: usize, j: usize| (j * (2 * n + 3 - j) / 2 + i) as u32;
-            for j in 0..n {
-                for i in 0..n - j {
-                    cells.push(vec![at(i, j), at(i + 1, j), at(i, j + 1)]);
-                    if i + j + 1 < n {
-                        cells.push(vec![at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-                    }
-                }
+        CellShape::Tetrahedron => tetrahedra(n),
+        CellShape::Triangle => triangles(n),
+        CellShape::Wedge => wedges(n),
+        _ => boxes(shape.dimension(), n),
+    }
+}
+
+/// A tetrahedron as a hexahedron, and a wedge.
+fn tetrahedron([a, b, c, d]: [u32; 4]) -> Vec<u32> {
+    vec![a, b, c, c, d, d, d, d]
+}
+
+fn wedge([a, b, c]: [u32; 3], [d, e, f]: [u32; 3]) -> Vec<u32> {
+    vec![a, b, c, c, d, e, f, f]
+}
+
+/// A tetrahedron, or its parts between the middles of its edges: four at the corners, and the octahedron within cut along a
+/// diagonal.
+fn tetrahedra(n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
+    // Edges 01, 12, 02, 03, 23, 13 are points 4 to 9.
+    const PARTS: [[u32; 4]; 8] = [
+        [0, 4, 6, 7],
+        [4, 1, 5, 9],
+        [6, 5, 2, 8],
+        [7, 9, 8, 3],
+        [4, 6, 7, 8],
+        [4, 7, 9, 8],
+        [4, 9, 5, 8],
+        [4, 5, 6, 8],
+    ];
+    let vertices = CellShape::Tetrahedron.vertices();
+    let mut points = vertices.to_vec();
+    if n == 1 {
+        return (points, vec![tetrahedron([0, 1, 2, 3])]);
+    }
+    let middle = |[a, b]: &[usize; 2]| std::array::from_fn(|k| 0.5 * (vertices[*a][k] + vertices[*b][k]));
+    points.extend(CellShape::Tetrahedron.edges().iter().map(middle));
+    (points, PARTS.map(tetrahedron).to_vec())
+}
+
+fn triangles(n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
+    let share = |k: usize| k as f64 / n as f64;
+    let points = (0..=n).flat_map(|j| (0..=n - j).map(move |i| [share(i), share(j), 0.0])).collect();
+    let at = |i: usize, j: usize| (j * (2 * n + 3 - j) / 2 + i) as u32;
+    let mut cells = Vec::new();
+    for j in 0..n {
+        for i in 0..n - j {
+            cells.push(vec![at(i, j), at(i + 1, j), at(i, j + 1)]);
+            if i + j + 1 < n {
+                cells.push(vec![at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
             }
-            (points, cells)
-        }
-        _ => {
-            let dimension = shape.dimension();
-            let number = |k: usize| if k < dimension { n + 1 } else { 1 };
-            let side = |i: usize, k: usize| if k < dimension { 2.0 * i as f64 / n as f64 - 1.0 } else { 0.0 };
-            let mut points = Vec::new();
-            for k in 0..number(2) {
-                for j in 0..number(1) {
-                    points.extend((0..number(0)).map(|i| [side(i, 0), side(j, 1), side(k, 2)]));
-                }
-            }
-            let at = |i: usize, j: usize, k: usize| ((k * number(1) + j) * number(0) + i) as u32;
-            for k in 0..if dimension == 3 { n } else { 1 } {
-                for j in 0..if dimension > 1 { n } else { 1 } {
-                    for i in 0..n {
-                        let quad = |k: usize| [at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)];
-                        cells.push(match dimension {
-                            1 => vec![at(i, 0, 0), at(i + 1, 0, 0)],
-                            2 => quad(0).to_vec(),
-                            _ => [quad(k), quad(k + 1)].concat(),
-                        });
-                    }
-                }
-            }
-            (points, cells)
         }
     }
+    (points, cells)
+}
+
+fn wedges(n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
+    let (base, triangles) = triangles(n);
+    let height = |k: usize| 2.0 * k as f64 / n as f64 - 1.0;
+    let points = (0..=n).flat_map(|k| base.iter().map(move |x| [x[0], x[1], height(k)])).collect();
+    let layer = |k: usize, t: &[u32]| [0, 1, 2].map(|i| t[i] + (k * base.len()) as u32);
+    let cells = (0..n).flat_map(|k| triangles.iter().map(move |t| wedge(layer(k, t), layer(k + 1, t)))).collect();
+    (points, cells)
+}
+
+/// Lines, quadrilaterals or hexahedra.
+fn boxes(dimension: usize, n: usize) -> (Vec<Local>, Vec<Vec<u32>>) {
+    let number = |k: usize| if k < dimension { n + 1 } else { 1 };
+    let side = |i: usize, k: usize| if k < dimension { 2.0 * i as f64 / n as f64 - 1.0 } else { 0.0 };
+    let mut points = Vec::new();
+    for k in 0..number(2) {
+        for j in 0..number(1) {
+            points.extend((0..number(0)).map(|i| [side(i, 0), side(j, 1), side(k, 2)]));
+        }
+    }
+    let at = |i: usize, j: usize, k: usize| ((k * number(1) + j) * number(0) + i) as u32;
+    let quad = |[i, j, k]: [usize; 3]| [at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)];
+    let count = |k: usize| if k < dimension { n } else { 1 };
+    let mut cells = Vec::new();
+    for k in 0..count(2) {
+        for j in 0..count(1) {
+            cells.extend((0..n).map(|i| match dimension {
+                1 => vec![at(i, 0, 0), at(i + 1, 0, 0)],
+                2 => quad([i, j, 0]).to_vec(),
+                _ => [quad([i, j, k]), quad([i, j, k + 1])].concat(),
+            }));
+        }
+    }
+    (points, cells)
 }

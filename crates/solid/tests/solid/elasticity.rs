@@ -40,7 +40,8 @@ fn prescribed<const D: usize>(
 ) -> f64 {
     let space = if D == 2 { Space::PlaneStrain } else { Space::Solid };
     let mut system = system(mesh, degree, poissons_ratio, space);
-    let along = |i: usize| -> Option<system::TimeField> { (i < D).then(|| Arc::new(move |x: &Point<3>, _| exact(x)[i]) as _) };
+    let along =
+        |i: usize| -> Option<system::TimeField> { (i < D).then(|| Arc::new(move |x: &Point<3>, _| exact(x)[i]) as _) };
     system.supports.push(Support {
         name: "all".into(),
         part: part(0, "all"),

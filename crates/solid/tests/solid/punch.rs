@@ -42,15 +42,17 @@ fn the_edge_is_singular_like_an_inverse_root() {
     let mut contact = Mortar::new("touch", of((1, "bottom")), of((0, "top")), Enforcement::Multiplier).unwrap();
     contact.slides_little();
     system.contacts.push(Box::new(contact));
-    assert_eq!(system.free_motion(1).unwrap().as_deref(), Some("moving along y"), "the punch falls until the block holds it");
+    assert_eq!(
+        system.free_motion(1).unwrap().as_deref(),
+        Some("moving along y"),
+        "the punch falls until the block holds it"
+    );
     let (_, results) = run(&mut system, &[1.0]);
     let nodes: Vec<(f64, f64)> = results[0].sites[0].iter().map(|s| (s.x[0], s.shown_pressure())).collect();
     assert!((force(&results[0], 0)[1] / 10.0 - 1.0).abs() < 1e-7);
     let exponent = |from: f64, to: f64| {
-        let points: Vec<(f64, f64)> = (nodes.iter())
-            .filter(|n| n.0 >= from && n.0 <= to)
-            .map(|(x, p)| ((1.0 - x * x).ln(), p.ln()))
-            .collect();
+        let points: Vec<(f64, f64)> =
+            (nodes.iter()).filter(|n| n.0 >= from && n.0 <= to).map(|(x, p)| ((1.0 - x * x).ln(), p.ln())).collect();
         let count = points.len() as f64;
         let (mx, my) =
             (points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count);

@@ -1,20 +1,19 @@
 //! Of `output::rigid`.
 
 use signorini::output::rigid::{file, joined};
-use signorini::output::solid_state::Gap;
 use signorini::testing::region;
 use signorini_contact::GapJet;
 use signorini_geometry::Vector;
 
 #[test]
 fn the_edge_of_a_disc_is_a_closed_line_in_its_file() {
-    let gap: Gap = Box::new(|x| GapJet::ball(x, &Vector::<3>::zeros(), 0.5));
+    let gap = |x: &Vector<3>| GapJet::ball(x, &Vector::<3>::zeros(), 0.5);
     let corner = Vector::<3>::new(1.0, 1.0, 0.0);
     let (points, cells) = joined(&region(&gap, [-corner, corner]).1, 1e-9);
     assert!(points.len() > 100 && points.iter().all(|x| (x.norm() - 0.5).abs() < 1e-12));
     let mut met = vec![0; points.len()];
     cells.iter().flatten().for_each(|&k| met[k as usize] += 1);
     assert_eq!(met.iter().position(|m| *m != 2), None);
-    let text = String::from_utf8(file::<2>(&gap, [-corner, corner]).unwrap()).unwrap();
+    let text = String::from_utf8(file(&gap, [-corner, corner], false).unwrap()).unwrap();
     assert!(text.contains("<Lines>") && text.contains(&format!("NumberOfPoints=\"{}\"", points.len())));
 }

@@ -1,56 +1,7 @@
-//! Contact of solids against the linear model, the patch test, and statics.
+//! Contact of solids: the patch test, and statics.
 
 use super::*;
-use signorini_contact::GapJet;
 use signorini_geometry::rigid_shape::Plane;
-use signorini_solid::{Bodies, Circumstances, Master, Method, Model, SupportKind};
-
-/// A shoe, round below, pressed on a plane: the same problem as that of the linear model.
-#[test]
-fn a_linear_problem_is_that_of_the_linear_model() {
-    for degree in 1..=3 {
-        let mesh = rectangle([-0.5, 0.0], [0.5, 0.5], [6, 3], degree.min(2), |mut x| {
-            x[1] += 0.3 * x[0] * x[0] * (1.0 - x[1] / 0.5);
-            x
-        });
-        let groups = mesh.groups().clone();
-        let to = Point::<2>::new(0.02, -0.03);
-        let mut bodies = Bodies::<2>::new(Space::PlaneStrain);
-        bodies.add("shoe", mesh.clone(), degree, ELASTIC);
-        let support = signorini_solid::Support {
-            name: "top".into(),
-            body: 0,
-            group: groups["top"].clone(),
-            kind: SupportKind::Components(vec![true; 2]),
-        };
-        let slave = bodies.surface(0, groups["bottom"].sides.clone());
-        let mut contact = signorini_solid::Contact::new("touch", slave, Master::Rigid);
-        contact.method = Method::Node;
-        let mut model = Model::new(bodies, vec![support], vec![contact]).unwrap();
-        let now = Circumstances {
-            displacement: &|_, _| to,
-            load: vec![0.0; model.bodies.unknowns()],
-            rigid: vec![Some(Box::new(|x: &Point<2>| GapJet::flat(x[1], Point::<2>::new(0.0, 1.0))))],
-            motion: vec![],
-        };
-        let known = model.solve(&now, &mut |_, _| true).unwrap();
-
-        let mut system = System::default();
-        system.bodies.push(Box::new(solid("shoe", mesh, degree, ELASTIC, StressLaw::LinearElastic)));
-        let plane = Plane { point: v(0.0, 0.0, 0.0), normal: v(0.0, 1.0, 0.0) };
-        system.bodies.push(Box::new(rigid(plane, |_| v(0.0, 0.0, 0.0))));
-        system.supports.push(hold(0, "top", [Some(to[0]), Some(to[1]), None]));
-        touch(&mut system, [(0, "bottom"), (1, "")], Sampling::Nodes, Enforcement::Multiplier, None);
-        let (state, results) = run(&mut system, &[1.0]);
-        let most = known.u.iter().fold(0.0f64, |m, u| m.max(u.abs()));
-        let off = known.u.iter().zip(&state.bodies[0].configuration).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        assert!(off < 1e-8 * most, "degree {degree}: {off:e}");
-        let pressed = force(&results[0], 0);
-        assert!((pressed[1] - known.contacts[0].force[1]).abs() < 1e-9 * pressed[1], "{pressed}");
-        assert!((pressed + results[0].support_forces[0][0]).norm() < 1e-9 * pressed[1]);
-        assert!((results[0].energy - known.energy).abs() < 1e-9 * known.energy);
-    }
-}
 
 /// Two blocks pressed together: deviation of the stress across the interface, relative to the pressure.
 fn patch(cells: [usize; 2], degree: usize, sampling: Sampling, enforcement: Enforcement) -> f64 {

@@ -50,7 +50,13 @@ fn cuboid(low: [f64; 3], high: [f64; 3], n: [usize; 3], map: impl FnMut(Point<3>
     block::<3>(&std::array::from_fn(|k| even(low[k], high[k], n[k])), 1, map)
 }
 
-pub fn solid<const D: usize>(name: &str, mesh: Mesh<D>, degree: usize, elastic: Elastic, law: StressLaw) -> SolidBody<D> {
+pub fn solid<const D: usize>(
+    name: &str,
+    mesh: Mesh<D>,
+    degree: usize,
+    elastic: Elastic,
+    law: StressLaw,
+) -> SolidBody<D> {
     let space = if D == 2 { Space::PlaneStrain } else { Space::Solid };
     let groups = mesh.groups().clone();
     SolidBody::new(name, Arc::new(mesh), degree, (elastic, law), space, groups).unwrap()

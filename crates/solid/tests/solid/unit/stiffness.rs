@@ -138,7 +138,8 @@ fn loads_have_their_resultants() {
     let start = body.start();
     let two = |_: &Point<3>| 2.0;
     let vector = |_: &Point<3>| Vector::<3>::new(1.0, 2.0, 3.0);
-    let near = |found: Vector<3>, exact: [f64; 3]| assert!((found - Vector::<3>::from(exact)).norm() < 1e-13, "{found}");
+    let near =
+        |found: Vector<3>, exact: [f64; 3]| assert!((found - Vector::<3>::from(exact)).norm() < 1e-13, "{found}");
     near(resultant(Some("boundary"), Load::Pressure(&two), &start), [0.0; 3]);
     near(resultant(Some("top"), Load::Pressure(&two), &start), [0.0, 0.0, -2.0 * 1.5]);
     near(resultant(Some("left"), Load::Pressure(&two), &start), [2.0 * 1.5 * 0.8, 0.0, 0.0]);

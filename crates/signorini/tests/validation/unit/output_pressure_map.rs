@@ -1,4 +1,4 @@
-//! Of `output::solid_space`.
+//! Of `output::pressure_map`.
 
 use signorini::testing::{directed, distance};
 

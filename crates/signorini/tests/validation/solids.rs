@@ -48,13 +48,14 @@ pictures = false
                     list.map(|v| number(v.get("force").unwrap_or(v).get(axis).unwrap())).sum::<f64>()
                 };
                 let sum = of("support_forces") + of("load_forces") + of("contacts");
-                assert!(sum.abs() < 1e-13, "degree {degree}, {second}, axis {axis}: {sum:e}");
+                // Newton's method ends at 1e-10 of the largest force.
+                assert!(sum.abs() < 1e-11, "degree {degree}, {second}, axis {axis}: {sum:e}");
             }
         }
     }
     let contradiction = case(2, "on = \"b:back\"\ndisplacement = [\"1.001e-3*y/(1 + z^2)\", 0, 0]");
     let told = error(&contradiction).message;
-    assert!(told.contains("prescribe different displacements"), "{told}");
+    assert!(told.contains("contradict each other"), "{told}");
 }
 
 /// Conditions at quadrature points are more than the surface can follow: repeated penalties end all the same.
@@ -232,8 +233,8 @@ fn only_what_looks_at_each_other_meets() {
         assert!((at(last_step(&found), "/contacts/b/force/2") - 10.0).abs() < 1e-9);
         let found = summary(&case(height, "[contacts.any]\nall = true\n"), &set(&[]));
         assert!((at(last_step(&found), "/contacts/any_lower_upper/force/2") + 10.0).abs() < 1e-9);
-        assert!((at(last_step(&found), "/contacts/any_lower_floor/force/2") - 10.0).abs() < 1e-9);
-        assert_eq!(at(last_step(&found), "/contacts/any_upper_floor/area"), 0.0);
+        assert!((at(last_step(&found), "/contacts/any_floor_lower/force/2") - 10.0).abs() < 1e-9);
+        assert_eq!(at(last_step(&found), "/contacts/any_floor_upper/area"), 0.0);
         assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0));
     }
 }

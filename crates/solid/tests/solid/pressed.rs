@@ -12,9 +12,7 @@ use std::sync::Arc;
 pub type Way = (Option<Sampling>, Enforcement);
 
 pub const MORTAR: Way = (None, Enforcement::Multiplier);
-pub const NODE: Way = (Some(Sampling::Nodes), Enforcement::Multiplier);
 pub const NITSCHE: Way = (Some(Sampling::GaussPoints), Enforcement::Nitsche);
-pub const PENALTY: Way = (Some(Sampling::GaussPoints), Enforcement::Penalty { wanted_penetration: None });
 
 /// The sites of the bottom of a body of which groups are held in some components, at the displacement given.
 pub fn pressed<const D: usize>(
@@ -51,11 +49,7 @@ pub fn pressed<const D: usize>(
             mortar.slides_little();
             Box::new(mortar)
         }
-        Some(sampling) => {
-            let mut contact = Contact::new("touch", slave, master, sampling, enforcement).unwrap();
-            contact.pairing = Pairing::Now;
-            Box::new(contact)
-        }
+        Some(sampling) => Box::new(Contact::new("touch", slave, master, sampling, enforcement).unwrap()),
     };
     system.contacts.push(contact);
     let (_, results) = crate::system::run(&mut system, &[1.0]);

@@ -49,7 +49,8 @@ fn the_edge_is_singular_like_an_inverse_root() {
     );
     let (_, results) = run(&mut system, &[1.0]);
     let nodes: Vec<(f64, f64)> = results[0].sites[0].iter().map(|s| (s.x[0], s.shown_pressure())).collect();
-    assert!((force(&results[0], 0)[1] / 10.0 - 1.0).abs() < 1e-7);
+    // Forces balance to 1e-10 of the largest within the punch, which is 10 000 times as stiff as the block.
+    assert!((force(&results[0], 0)[1] / 10.0 - 1.0).abs() < 1e-6);
     let exponent = |from: f64, to: f64| {
         let points: Vec<(f64, f64)> =
             (nodes.iter()).filter(|n| n.0 >= from && n.0 <= to).map(|(x, p)| ((1.0 - x * x).ln(), p.ln())).collect();

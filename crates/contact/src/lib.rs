@@ -7,7 +7,7 @@
 //! - [`mortar`]: weighted gaps with dual functions.
 //! - [`kinematics`]: the gap of a pair with its variations, for any shape functions.
 //! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
-//! - [`mod@law`]: friction.
+//! - [`mod@law`] of friction.
 //! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
 //! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a

@@ -20,14 +20,17 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::{Aabb, Point};
 use space::polygons;
-/// The points of every slave face that see a master face no farther away than `reach`.
+/// The points of every slave face that see a master face no farther away than `reach`; `sees` tells which slave face may touch
+/// which master face.
 pub fn segments<const D: usize>(
     slave: &dyn ContactSurface<D>,
     master: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
     reach: f64,
+    sees: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<Vec<GapPoint<D>>> {
-    let candidates = candidates(slave, master, nodes, reach);
+    let mut candidates = candidates(slave, master, nodes, reach);
+    candidates.iter_mut().enumerate().for_each(|(face, list)| list.retain(|other| sees(face, *other)));
     let cut =
         |face: usize, extra: usize| pieces_of_face(Cut { slave, master, nodes, reach, extra }, face, &candidates[face]);
     let mut points: Vec<Vec<GapPoint<D>>> = (0..slave.face_count()).map(|face| cut(face, 0)).collect();
@@ -213,7 +216,7 @@ mod tests {
     fn points_cover_what_both_sides_have_in_common_with_their_gaps() {
         let (slave, master) = sides();
         let nodes = PressureNodes::new(&slave);
-        let points = segments(&slave, &master, &nodes, 1.0);
+        let points = segments(&slave, &master, &nodes, 1.0, &|_, _| true);
         let slope = 0.05f64.hypot(1.0);
         let (mut length, mut moment) = (0.0, 0.0);
         for (face, p) in points.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p))) {
@@ -237,7 +240,7 @@ mod tests {
         let (slave, master) = sides();
         let nodes = PressureNodes::new(&slave);
         let away = Polyline(master.0.iter().rev().copied().collect());
-        assert!(segments(&slave, &away, &nodes, 1.0).iter().all(Vec::is_empty));
-        assert!(segments(&slave, &master, &nodes, 0.05).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &away, &nodes, 1.0, &|_, _| true).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &master, &nodes, 0.05, &|_, _| true).iter().all(Vec::is_empty));
     }
 }

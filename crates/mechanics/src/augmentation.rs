@@ -39,11 +39,12 @@ impl System {
         let (first, _) = self.numbering();
         let at = self.bodies_in(state, &first);
         let lands = self.lands(at);
-        let of = |(contact, lands): (&Box<dyn Interaction>, &bool)| match lands {
+        let list = self.contacts.iter().map(AsRef::as_ref);
+        let of = |(contact, lands): (&dyn Interaction, &bool)| match lands {
             true => contact.guess(at, &residual),
             false => contact.remembered(),
         };
-        Ok(self.contacts.iter().zip(&lands).flat_map(of).collect())
+        Ok(list.zip(&lands).flat_map(of).collect())
     }
 
     /// Which contacts may guess what carries: of those that guess by gaps the one with the least gap about each body that

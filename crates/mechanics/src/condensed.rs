@@ -16,6 +16,7 @@ use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::points::{Order, Sampling};
 use crate::system::{Assembled, AssemblyError, System, SystemState, TimedLoad};
 use signorini_geometry::Point;
+use signorini_solve::cholesky::Symbolic;
 use signorini_solve::dense::Equilibrated;
 use signorini_solve::{Condensation, SolveError, SymmetricMatrix};
 use std::collections::BTreeSet;
@@ -23,6 +24,8 @@ use std::sync::{Mutex, OnceLock};
 
 /// Fewer unknowns of linear bodies are factorised with all others: that takes milliseconds.
 const LEAST: usize = 1000;
+/// More unknowns are factorised with multipliers eliminated: fewer take tenths of a second in any way.
+const MANY: usize = 10_000;
 /// Most unknowns that remain: a dense factor of more takes longer than a sparse one of all.
 const MOST: usize = 5000;
 /// So many unknowns of surfaces that may touch remain in any case: their dense factor costs less than another one of the body.
@@ -67,6 +70,17 @@ impl System {
             let others: usize = self.bodies.iter().zip(&of).filter(|(_, is)| !**is).map(|(b, _)| b.unknowns()).sum();
             if count < LEAST || others > MOST { vec![false; of.len()] } else { of }
         })
+    }
+
+    /// The order of elimination of a Cholesky factor of all bodies; none of systems with few unknowns, or in which not all know
+    /// where they are.
+    pub(crate) fn dissected(&self) -> Option<Symbolic> {
+        let (_, count) = self.numbering();
+        if count < MANY {
+            return None;
+        }
+        let places: Vec<[f64; 3]> = self.bodies.iter().flat_map(|body| body.places()).collect();
+        (places.len() == count).then(|| Symbolic::dissected(places))
     }
 
     /// Where the stiffness of bodies goes in a state.

@@ -3,10 +3,12 @@
 //! The merit is the root of the energy `Σ r²/k` of the residual on the springs `k` of the first tangent, one for each
 //! unknown: forces, moments, gaps and what supports lack count alike, in any unit.
 
+use crate::eliminated::eliminated_step;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
+use signorini_solve::cholesky::Symbolic;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::{Converged, Equations, Measured, Newton, NewtonFailure, Search, newton};
 use signorini_solve::schwarz::Inverses;
@@ -28,6 +30,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) system: &'a System,
     pub(crate) time: f64,
     pub(crate) analysis: Analysis,
+    /// Of the Cholesky factor with multipliers eliminated, for systems of many unknowns that have one.
+    pub(crate) symbolic: Option<Symbolic>,
     /// Whether steps are found by iterations, without the stiffness of bodies in the tangent.
     pub(crate) stiffness: Stiffness,
     pub(crate) solved: Solved,
@@ -303,6 +307,18 @@ impl Equations for Problem<'_> {
                     self.solved = Solved::Direct;
                     out = self.assemble(at, Order::Second)?;
                 }
+            }
+        }
+        // Without it once more where a stiffness is not positive definite, or far from symmetric.
+        if let Some(mut symbolic) = self.symbolic.take() {
+            if self.is_free {
+                let sizes = self.system.row_sizes(&out, self.stiffness());
+                self.add_grain(&mut out, &held, &sizes);
+            }
+            let count = self.is_spin.len();
+            if let Ok(step) = eliminated_step(&out.tangent, (count, &held), &right, &mut symbolic) {
+                self.symbolic = Some(symbolic);
+                return Ok(step);
             }
         }
         out.tangent.without_rows(|row| held[row as usize]);

@@ -299,6 +299,7 @@ impl System {
             solved: *solved,
             inverses: Inverses::default(),
             analysis: Analysis::default(),
+            symbolic: self.dissected(),
             is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),

@@ -25,6 +25,7 @@ pub mod condensed;
 pub mod contact;
 pub mod curve;
 mod density;
+mod eliminated;
 pub mod enforcement;
 mod equilibrium;
 mod free;

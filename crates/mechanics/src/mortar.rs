@@ -144,7 +144,7 @@ impl Mortar {
             enforcement,
             friction: None,
             axis: AxisChoice::Material,
-            search: Search { reach, extra: 0, facing },
+            search: Search { reach, extra: 0, facing, at_rest: false },
             memory: vec![NodeMemory::default(); places.len()],
             nodes,
             places,

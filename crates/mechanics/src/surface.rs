@@ -23,8 +23,9 @@ pub trait Surface: Sync {
     /// face.
     fn normal(&self, face: usize, s: &Local) -> Vector<3>;
 
-    /// A point as one that is tested, with the averaged normal and what moves both.
-    fn placed(&self, face: usize, s: &Local) -> Placed;
+    /// A point as one that is tested, with the averaged normal and what moves both; second derivatives of the normal only where
+    /// they are asked for.
+    fn placed(&self, face: usize, s: &Local, bends: bool) -> Placed;
 
     /// A point as one that is met: position and tangents, with what moves them.
     fn met(&self, face: usize, s: &Local) -> Foot;

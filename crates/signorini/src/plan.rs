@@ -61,6 +61,15 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
     }
 }
 
+/// Bodies with the cells of all solids halved, to estimate errors.
+///
+/// # Errors
+/// Those of [`plan`].
+pub(crate) fn halved(problem: &Problem) -> Result<Plan, CaseError> {
+    let planner = Planner { halves: true, ..Planner::new(problem)? };
+    Ok(Plan::Mechanics(Box::new(planner.mechanics()?)))
+}
+
 /// A case for bodies in space or in a plane that has none.
 fn no_body_here(problem: &Problem) -> CaseError {
     if problem.bodies.values().any(|b| matches!(b, Body::Membrane(_))) {

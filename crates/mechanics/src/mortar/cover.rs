@@ -8,7 +8,8 @@ use super::facing::Facing;
 use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, shares_on_the_way,
+    ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, segments, shares,
+    shares_on_the_way,
 };
 use signorini_geometry::Point;
 
@@ -53,6 +54,9 @@ pub(super) struct Search {
     /// Points of a piece along each direction beyond those that its degree asks for.
     pub extra: usize,
     pub facing: Facing,
+    /// Whether what sees what is found with the bodies at rest, once: by as many points as integrate exactly, and without nodes
+    /// that are hardly covered.
+    pub at_rest: bool,
 }
 
 impl Nodes {
@@ -125,7 +129,7 @@ fn whole<const D: usize>(
     let nowhere = |_: &Point<D>| GapJet::flat(0.0, Point::<D>::zeros());
     let mut points = rigid_points(faces, &nowhere);
     points.iter_mut().enumerate().filter(|(face, _)| !facing.slave(*face)).for_each(|(_, list)| list.clear());
-    cover(nodes, faces, points, folded)
+    cover(nodes, faces, points, (folded, false))
 }
 
 fn cut<const D: usize>(
@@ -141,9 +145,12 @@ fn cut<const D: usize>(
     });
     let moved = Moved { surface: slave, u: placed[0].faces().1 };
     let other = Moved { surface: master, u: placed[1].faces().1 };
-    let mut points = pieces(&moved, &other, &nodes, (search.reach, search.extra), &|face, other| {
-        search.facing.slave(face) && search.facing.master(other)
-    });
+    let sees = |face: usize, other: usize| search.facing.slave(face) && search.facing.master(other);
+    if search.at_rest {
+        let points = segments(slave, master, &nodes, search.reach, &sees);
+        return cover(&nodes, slave, points, (folded, true));
+    }
+    let mut points = pieces(&moved, &other, &nodes, (search.reach, search.extra), &sees);
     for (face, list) in points.iter_mut().enumerate() {
         for point in list {
             let area = |faces: &dyn ContactSurface<D>| {
@@ -153,16 +160,17 @@ fn cut<const D: usize>(
             point.weight *= area(slave) / area(&moved);
         }
     }
-    cover(&nodes, slave, points, folded)
+    cover(&nodes, slave, points, (folded, false))
 }
 
 fn cover<const D: usize>(
     nodes: &PressureNodes<D>,
     slave: &dyn ContactSurface<D>,
     points: Vec<Vec<GapPoint<D>>>,
-    folded: &[bool],
+    (folded, at_rest): (&[bool], bool),
 ) -> Cover {
-    let shares = shares_on_the_way(slave, nodes, &points, &|k| folded[k as usize]);
+    let found = if at_rest { shares } else { shares_on_the_way };
+    let shares = found(slave, nodes, &points, &|k| folded[k as usize]);
     let of_face = |(face, (list, shares)): (usize, (Vec<GapPoint<D>>, Vec<Vec<(u32, f64)>>))| {
         let list = list.into_iter().zip(shares);
         let of = |(p, shares): (GapPoint<D>, Vec<(u32, f64)>)| CoveredPoint {

@@ -13,6 +13,8 @@ use signorini_geometry::{Point, Vector};
 pub(super) struct Facing {
     slave: Option<Vec<bool>>,
     master: Option<Vec<bool>>,
+    /// Whether no face of the slave looks at the master at the start.
+    pub is_away: bool,
 }
 
 impl Facing {
@@ -29,9 +31,10 @@ impl Facing {
         let is_whole = |(part, body): (&Part, &dyn Body)| part.group.is_none() && body.is_linear();
         let states = [slave.1.start(), master.1.start()];
         let other = master.1.master(master.0.group.as_deref(), &states[1])?;
-        let mut out = Facing::default();
+        let looks = looking(surface, other.as_ref());
+        let mut out = Facing { is_away: looks.is_none(), ..Facing::default() };
         if is_whole(slave) {
-            out.slave = looking(surface, other.as_ref());
+            out.slave = looks;
         }
         if let Some(faces) = master.1.surface(master.0.group.as_deref(), &states[1]).filter(|_| is_whole(master)) {
             out.master = looking(faces.as_ref(), slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref());

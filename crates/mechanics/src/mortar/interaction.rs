@@ -54,7 +54,7 @@ impl Mortar {
         let (body, state) = at.side(&self.slave);
         let surface = body.surface(self.slave.group.as_deref(), state);
         let surface = surface.ok_or_else(|| super::no_surface(body, &self.slave))?;
-        Ok(self.places.iter().map(|(face, s)| surface.placed(*face, s)).collect())
+        Ok(self.places.iter().map(|(face, s)| surface.placed(*face, s, false)).collect())
     }
 
     /// The nodes as they are found.
@@ -73,7 +73,7 @@ impl Mortar {
         let of = |k: usize| {
             let (face, s) = &self.places[k];
             let (measure, projected) = (&found.measures[k], &found.projected[k]);
-            let placed = found.sides.slave.placed(*face, s);
+            let placed = found.sides.slave.placed(*face, s, false);
             let mut out = SiteResult { x: placed.x, ..SiteResult::default() };
             if !self.sees(k, measure.weight) {
                 return out;
@@ -136,6 +136,11 @@ impl Interaction for Mortar {
         self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
     }
 
+    fn doubt(&self, _: Bodies<'_>) -> Option<String> {
+        let told = || format!("no part of the slave of contact `{}` faces the master", self.name);
+        self.search.facing.is_away.then(told)
+    }
+
     fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
         let found = self.found(at, &self.remembered()).ok()?;
         self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
@@ -179,7 +184,7 @@ impl Interaction for Mortar {
         self.small.iter_mut().for_each(SmallSliding::forget);
         let Ok(sides) = Sides::new(self, at) else { return };
         for (k, (face, s)) in self.places.iter().enumerate() {
-            let placed = sides.slave.placed(*face, s);
+            let placed = sides.slave.placed(*face, s, false);
             let normal = sides.slave.normal(*face, s).normalize();
             let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
             let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];

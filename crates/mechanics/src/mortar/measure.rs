@@ -89,7 +89,7 @@ impl<'a> Sides<'a> {
     /// # Errors
     /// Why there is no pair.
     pub fn pair(&self, point: &CoveredPoint, friction: bool, order: Order) -> Result<Pair, NoPair> {
-        let slave = self.slave.placed(point.face, &point.s);
+        let slave = self.slave.placed(point.face, &point.s, friction && order == Order::Second);
         let met = match (&self.master, &point.master) {
             (Opposite::Surface(surface), Some((face, at))) => Met::Cut(Box::new(surface.met(*face, at))),
             (Opposite::Rigid(master), _) => {
@@ -115,7 +115,7 @@ impl<'a> Sides<'a> {
     /// # Errors
     /// Why there is no pair.
     pub fn separation(&self, matched: &Matched) -> Result<Separation, NoPair> {
-        let slave = self.slave.placed(matched.face, &matched.s);
+        let slave = self.slave.placed(matched.face, &matched.s, false);
         match &self.master {
             Opposite::Surface(surface) => {
                 let averaged = slave.averaged.as_ref().ok_or(NoPair::NoCoordinates)?;

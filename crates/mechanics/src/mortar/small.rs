@@ -42,6 +42,23 @@ impl SmallSliding {
     }
 }
 
+/// A pair whose gap varies as it opens, along a normal that does not turn: what moves the normal only is left out.
+fn linear(pair: &Pair) -> Pair {
+    let rubs = !pair.slip.is_empty();
+    let counts = |k: &usize| pair.opening[*k] != 0.0 || (rubs && pair.slip[*k] != Vector::<3>::zeros());
+    let kept: Vec<usize> = (0..pair.unknowns.len()).filter(counts).collect();
+    let opening: Vec<f64> = kept.iter().map(|k| pair.opening[*k]).collect();
+    let vectors = |list: &[Vector<3>]| kept.iter().filter_map(|k| list.get(*k).copied()).collect();
+    let mut out = Pair::default();
+    (out.gap, out.normal, out.point, out.stuck) = (pair.gap, pair.normal, pair.point, pair.stuck);
+    out.unknowns = kept.iter().map(|k| pair.unknowns[*k]).collect();
+    out.slip = vectors(&pair.slip);
+    out.d_normal = if rubs { vec![Vector::<3>::zeros(); kept.len()] } else { Vec::new() };
+    out.d_gap.clone_from(&opening);
+    out.opening = opening;
+    out
+}
+
 impl Mortar {
     /// What sees what in a state.
     pub(super) fn measured(&self, sides: &Sides<'_>, at: Bodies<'_>) -> Result<Measured, PlaceError> {
@@ -88,8 +105,7 @@ impl Mortar {
         let cover = sides.cover(self);
         let (mut pairs, lost) = self.pairs(&sides, &cover);
         for pair in pairs.iter_mut().flatten().flatten() {
-            pair.d_gap.clone_from(&pair.opening);
-            pair.d_normal.fill(Vector::<3>::zeros());
+            *pair = linear(pair);
         }
         let mut separations = if self.friction.is_some() { self.separations(&sides) } else { Vec::new() };
         separations.iter_mut().flatten().for_each(|apart| apart.d_normal.fill(Vector::<3>::zeros()));
@@ -99,5 +115,6 @@ impl Mortar {
     /// Makes small sliding the choice: for bodies whose surfaces move by much less than their cells.
     pub fn slides_little(&mut self) {
         self.small = Some(SmallSliding::default());
+        self.search.at_rest = true;
     }
 }

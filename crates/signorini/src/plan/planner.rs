@@ -14,6 +14,8 @@ pub(crate) struct Planner<'a> {
     pub problem: &'a Problem,
     pub reader: Reader<'a>,
     pub space: Space,
+    /// Whether the cells of solids are halved, to estimate errors where functions cannot be raised.
+    pub halves: bool,
     /// What looks wrong in files that were read.
     pub warnings: RefCell<Vec<Warning>>,
 }
@@ -45,6 +47,7 @@ impl<'a> Planner<'a> {
             problem,
             reader: Reader { problem, units, names: Names::default(), interpreted: RefCell::default() },
             space: problem.space,
+            halves: false,
             warnings: RefCell::default(),
         };
         planner.define_constants()?;

@@ -39,13 +39,13 @@ fn each_mistake_is_told_at_its_place() {
         ("hertz", "poissons_ratio = 0.3", "poissons_ratio = 0.5", "ratio is 0.5", "0.5", "0.4999"),
         ("hertz", "degree = 2", "degree = 9", "between 1 and 8", "9", ""),
         ("hertz", "[0, \"-0.085*t\"]", "[0]", "expected 2 components", "[0]", ""),
-        ("hertz", "[0, \"-0.085*t\"]", "0", "is a vector", "0", "free"),
+        ("hertz", "[0, \"-0.085*t\"]", "0", "expected 2 components", "0", "free"),
         ("hertz", "\"-0.085*t\"", "\"-0.085/(t-t)\"", "not a finite number", "\"-0.085/(t-t)\"", ""),
         ("hertz", "normal = [0, 1]", "normal = [0, 0]", "vector is zero", "[0, 0]", ""),
-        ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep in each other", "[contacts.touch]", "normal"),
+        ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep inside `plane`", "[contacts.touch]", "normal"),
         ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "axes", "positive volume"),
         ("hertz", "cells = [15, 16]", "cells = [15]", "`cells` 1", "{ from", ""),
-        ("hertz", "[\"block:bottom\", \"plane\"]", "[\"plane\", \"plane\"]", "both bodies", "plane", "`block`"),
+        ("hertz", "[\"block:bottom\", \"plane\"]", "[\"plane\", \"plane\"]", "names `plane` twice", "plane", ""),
         (
             "hertz",
             "[\"block:bottom\", \"plane\"]",
@@ -56,16 +56,9 @@ fn each_mistake_is_told_at_its_place() {
         ),
         ("incline", "mu = [0.3, 0.5]", "mu = -0.3", "must not be negative", "-0.3", "leave `friction` out"),
         ("incline", "mu = [0.3, 0.5]", "mu = [0.3, nan]", "not a finite number", "nan", ""),
-        (
-            "incline",
-            "mu = [0.3, 0.5], axis = [1, 0, 0]",
-            "mu = [0.3, 0.5]",
-            "direction of the first",
-            "[0.3, 0.5]",
-            "axis",
-        ),
+        ("incline", "mu = [0.3, 0.5], axis = [1, 0, 0]", "mu = [0.3, 0.5]", "require an axis", "[0.3, 0.5]", "axis"),
         ("incline", "axis = [1, 0, 0]", "axis = [0, 0, 0]", "vector is zero", "[0, 0, 0]", ""),
-        ("incline", "axis = [1, 0, 0]", "axis = [0, 0, 1]", "normal to the surface", "friction", ""),
+        ("incline", "axis = [1, 0, 0]", "axis = [0, 0, 1]", "normal to the surface", "[0, 0, 1]", ""),
         (
             "incline",
             "coulomb = { mu = [0.3, 0.5], axis = [1, 0, 0] }",
@@ -84,17 +77,24 @@ fn each_mistake_is_told_at_its_place() {
             "gauss_point",
         ),
         ("cattaneo_mindlin", "mu = 0.4", "mu = [0.4, 0.2]", "one coefficient", "[0.4, 0.2]", "mu = 0.3"),
-        ("hertz", "[contacts.touch]", "[contacts.touch]\nmethod.active_set = {}", "for membranes", "method", "mortar"),
+        (
+            "hertz",
+            "[contacts.touch]",
+            "[contacts.touch]\nmethod.active_set = {}",
+            "for other bodies",
+            "method",
+            "mortar",
+        ),
         ("hertz", "space = \"plane_strain\"", "space = \"3d\"", "expected 3", "[", ""),
         (
             "hertz",
             "[supports.symmetry]",
             "[supports.other]\non = \"block:top\"\ndisplacement = [0.1, \"free\"]\n[supports.symmetry]",
-            "different displacements",
+            "contradict each other",
             "[supports.",
             "",
         ),
-        ("hertz", "on = \"block:left\"", "on = \"block:bottom\"", "flat group", "[supports.symmetry]", ""),
+        ("hertz", "on = \"block:left\"", "on = \"block:bottom\"", "flat group", "0", ""),
         ("punch", "force = [0, \"-10*t\"]", "normal = -1", "load of a membrane", "-1", "pressure"),
         ("punch", "uniform = true", "", "prescribes nothing", "[supports.punch_head]", "uniform"),
         ("torus", "minor_radius = 0.3", "minor_radius = 1.3", "not smaller", "1.3", ""),
@@ -125,7 +125,7 @@ fn failures_say_what_happened() {
     let found = summary(&case, &set(&[]));
     assert_eq!(found["converged"], false);
     let verdict = found["verdict"].as_str().unwrap();
-    assert!(found["reason"] == "free_body" && verdict.contains("`punch` is free to translate along y"), "{verdict}");
+    assert!(verdict.contains("no part of the slave of contact `touch` faces the master"), "{verdict}");
 
     let far = example("hertz").replace("point = [0, 0]", "point = [0, -1]");
     let found = summary(&far, &set(&[]));
@@ -191,22 +191,14 @@ increments = 2
 [output]
 pictures = false
 "#;
-    for (case, axis) in [(PAIR, "+y"), (on_a_plane, "+z")] {
+    for (case, axis) in [(PAIR, "(0.000, 1.000, 0.000)"), (on_a_plane, "(0.000, 0.000, 1.000)")] {
         for (degree, sliding) in [("1", "small"), ("3", "small"), ("1", "finite")] {
             let case = case.replace("degree = 1", &format!("degree = {degree}"));
             let case = case.replace("[[steps]]", &format!("sliding = \"{sliding}\"\n[[steps]]"));
             let found = summary(&case, &set(&[]));
             let verdict = found["verdict"].as_str().unwrap();
             assert_eq!((&found["converged"], &found["reason"]), (&Value::from(false), &Value::from("free_body")));
-            let motion = match (sliding, axis) {
-                ("small", axis) => format!("`a` is pulled away along {axis}"),
-                (_, "+y") => {
-                    "`a` is free: no support or contact restrains it against moving along (0.000, 1.000, 0.000)".into()
-                }
-                _ => {
-                    "`a` is free: no support or contact restrains it against moving along (0.000, 0.000, 1.000)".into()
-                }
-            };
+            let motion = format!("`a` is free: no support or contact restrains it against moving along {axis}");
             assert!(verdict.contains(&motion), "{degree} {sliding}: {verdict}");
             assert_eq!(found["steps"][0]["converged"], true, "{degree} {sliding}");
         }
@@ -229,7 +221,8 @@ fn a_stack_of_three_bodies_settles() {
             );
         }
         case += "[supports.base]\non = \"a:bottom\"\nnormal = 0\n[loads.p]\non = \"c:top\"\npressure = 1e-3\n\
-                 [contacts.ab]\nbetween = [\"a:top\", \"b:bottom\"]\n[contacts.bc]\nbetween = [\"b:top\", \"c:bottom\"]\n\
+                 [contacts.ab]\nbetween = [\"a:top\", \"b:bottom\"]\nsliding = \"small\"\n\
+                 [contacts.bc]\nbetween = [\"b:top\", \"c:bottom\"]\nsliding = \"small\"\n\
                  [output]\npictures = false\n";
         let found = summary(&case, &set(&[]));
         assert_eq!(found["converged"], true, "{gap}: {}", found["verdict"]);

@@ -67,7 +67,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
         self.shares(face, s).map(|(share, corner)| corner.vector * share).sum()
     }
 
-    fn placed(&self, face: usize, s: &Local) -> Placed {
+    fn placed(&self, face: usize, s: &Local, bends: bool) -> Placed {
         let number = self.surface.faces[face];
         let list = self.faces.slopes(number, s);
         let at = self.faces.current(number, s, &list, self.u);
@@ -75,7 +75,9 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
         for (share, corner) in self.shares(face, s) {
             averaged.vector += corner.vector * share;
             averaged.functions.extend(corner.functions.iter().map(|f| Function { value: f.value * share, ..*f }));
-            averaged.bends.extend(corner.bends.iter().map(|b| Bend { value: b.value * share, ..*b }));
+            if bends {
+                averaged.bends.extend(corner.bends.iter().map(|b| Bend { value: b.value * share, ..*b }));
+            }
         }
         merge(&mut averaged.functions);
         let mut moved = Vec::with_capacity(D * list.len());

@@ -1,10 +1,14 @@
 //! Contact by mortar between bodies of a system.
 
+use super::places::normals_of;
 use super::{Kind, Tested};
 use crate::plan::planner::Planner;
 use crate::problem::{self, CaseError, Enforcement, Friction, Method, Sliding};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AxisChoice, Enforcement as Kept, Interaction, Mortar, System};
+
+/// Sine of the angle to the normal from which on a direction is one along the surface.
+const ALONG: f64 = 1e-6;
 
 impl Planner<'_> {
     /// Contact of a solid with another one, or with a rigid body, where `method.mortar` is stated or no method at all.
@@ -50,6 +54,7 @@ impl Planner<'_> {
             if let Friction::Coulomb(coulomb) = friction {
                 contact.axis = self.axis_choice(coulomb)?;
                 self.check_axis(coulomb, contact.axis, &kinds[master.body])?;
+                self.check_along(coulomb, contact.axis, (slave, system))?;
             }
         }
         let slides_little = key.sliding == Some(Sliding::Small);
@@ -82,6 +87,27 @@ impl Planner<'_> {
             None => return Ok(()),
         };
         Err(self.problem.error(sliding, message).help("leave `sliding` out: any sliding distance is possible then"))
+    }
+
+    /// An axis that no face of the slave has along itself.
+    fn check_along(
+        &self,
+        law: &problem::CoulombFriction,
+        axis: AxisChoice,
+        (slave, system): (&Part, &System),
+    ) -> Result<(), CaseError> {
+        let (AxisChoice::OnSlave(v) | AxisChoice::OnMaster(v)) = axis else { return Ok(()) };
+        let body = system.bodies[slave.body].as_ref();
+        let start = body.start();
+        let normals = body.surface(slave.group.as_deref(), &start).map_or_else(Vec::new, |s| normals_of(s.as_ref()));
+        let at = law.axis.as_ref().map_or_else(|| self.key(&law.mu), |axis| self.key(axis));
+        match normals.is_empty() || normals.iter().any(|n| n.cross(&v).norm() > ALONG) {
+            true => Ok(()),
+            false => Err(self
+                .problem
+                .error(&at, "the axis of friction is normal to the surface")
+                .help("give a direction along the surface of the slave")),
+        }
     }
 
     /// Axes of friction that a mortar does not have.

@@ -7,7 +7,7 @@ use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Value, 
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::surface::Faces;
+use signorini_mechanics::surface::{Faces, Surface};
 use signorini_mechanics::system::{AssemblyError, TimeField};
 use signorini_mechanics::{
     Contribution, Hold, IncrementError, Load, Order, PlaceError, PlacedLoad, Sampling, Support, System, TimedLoad,
@@ -28,10 +28,7 @@ fn normal_of(system: &System, part: &Part) -> Result<Normal, String> {
     let start = body.start();
     let surface = body.surface(part.group.as_deref(), &start).filter(|_| part.group.is_some());
     let surface = surface.ok_or("`normal` requires a part of the boundary of a solid")?;
-    let normals: Vec<Vector<3>> = match surface.faces().0 {
-        Faces::Plane(faces) => normals(faces),
-        Faces::Space(faces) => normals(faces),
-    };
+    let normals = normals_of(surface.as_ref());
     let first = normals.first().ok_or("`normal` requires a part of the boundary of a solid")?;
     let farthest = normals.iter().map(|n| n.dot(first)).fold(1.0, f64::min);
     if farthest < FLAT {
@@ -49,6 +46,14 @@ fn normal_of(system: &System, part: &Part) -> Result<Normal, String> {
 
 /// Cosine of the angle between normals that are the same but for rounding.
 const FLAT: f64 = 1.0 - 1e-9;
+
+/// Unit normals at the vertices of all faces of a surface.
+pub(super) fn normals_of(surface: &dyn Surface) -> Vec<Vector<3>> {
+    match surface.faces().0 {
+        Faces::Plane(faces) => normals(faces),
+        Faces::Space(faces) => normals(faces),
+    }
+}
 
 /// Unit normals at the vertices of all faces.
 fn normals<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<Vector<3>> {
@@ -174,7 +179,7 @@ impl Planner<'_> {
             if !holds && key.spring.is_none() {
                 return Err(problem
                     .error(key, format!("the support `{name}` prescribes nothing"))
-                    .help("add  displacement = [0, 0, 0]  or  rotation = [0, 0, 0]  or  spring = […]"));
+                    .help("add  displacement = [0, 0, 0]  or  normal = 0  or  uniform = true  or  rotation = [0, 0, 0]  or  spring = […]"));
             }
             if holds {
                 let support = Support { name: name.clone(), part, displacement, rotation, along, uniform };
@@ -256,7 +261,9 @@ impl Planner<'_> {
         for (name, key) in &problem.loads {
             let part = self.part(&key.on, numbers)?;
             if let Some(normal) = &key.normal {
-                return Err(problem.error(normal, "`normal` is the load of a membrane"));
+                return Err(problem
+                    .error(normal, "`normal` is the load of a membrane")
+                    .help("loads of solids are pressure (positive pushes inwards), traction, force and body_force"));
             }
             let mut list = Vec::new();
             if let Some(v) = &key.pressure {

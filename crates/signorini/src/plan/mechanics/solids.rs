@@ -5,7 +5,7 @@ use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{CaseError, Solid, SolidEdge, Space as Stated, suggestion};
 use crate::report::Warning;
-use signorini_fem::{Group, Side};
+use signorini_fem::{Group, Halved, Side};
 use signorini_mechanics::Body;
 use signorini_solid::{EdgeError, EdgeOf, SolidBody, Space};
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,6 +50,12 @@ impl Planner<'_> {
         let law = self.material(key)?;
         let pieces = Pieces::new(name, &mesh);
         let mut groups = mesh.groups().clone();
+        let mut mesh = mesh;
+        if self.halves {
+            let halved = Halved::new(&mesh);
+            groups.values_mut().for_each(|group| *group = halved.group(group));
+            mesh = halved.mesh;
+        }
         let mut on_axis = false;
         if space == Space::Axisymmetric {
             let size = mesh.nodes().iter().map(|x| x.norm()).fold(0.0, f64::max);

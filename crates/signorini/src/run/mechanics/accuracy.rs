@@ -3,7 +3,7 @@
 use super::{MechanicsModel, report};
 use crate::output::system::SystemShown;
 use crate::plan::Plan;
-use crate::plan::mechanics::cells;
+use crate::plan::mechanics::{MechanicsPlan, cells};
 use crate::problem::{Body, Problem, SolidMesh, Space};
 use crate::report::{ErrorEstimate, StepReport};
 use signorini_mechanics::{IncrementResult, Solved};
@@ -34,26 +34,41 @@ impl Progress for Quiet<'_> {
     }
 }
 
-/// The problem with functions of one degree more; none with bodies whose functions have no degree, ropes and beams,
-/// where the mesh alone tells it, or where all bodies are rigid.
-fn finer(problem: &Problem) -> Option<(Problem, i64)> {
-    let mut finer = problem.clone();
+/// The same bodies with finer functions, and by how many times these are more along a line: of one degree more, or where there
+/// are none, as on triangles of degree 2, with cells of half the size. None with bodies whose functions have no degree, ropes and
+/// beams, or where all bodies are rigid.
+fn finer(problem: &Problem) -> Option<(Box<MechanicsPlan>, f64)> {
+    let mut raised = problem.clone();
     let mut least = None::<i64>;
-    for body in finer.bodies.values_mut() {
+    let (mut is_known, mut halves) = (true, true);
+    for body in raised.bodies.values_mut() {
         let (degree, usual) = match body {
             Body::Solid(solid) => {
                 let of_box = matches!(solid.mesh, SolidMesh::Box(_)).then_some(1);
                 (&mut solid.degree, of_box)
             }
-            Body::Cells(cells) => (&mut cells.degree, Some(cells::DEGREE as i64)),
+            Body::Cells(cells) => {
+                halves = false;
+                (&mut cells.degree, Some(cells::DEGREE as i64))
+            }
             Body::Rigid(_) => continue,
             _ => return None,
         };
-        let own = degree.or(usual)?;
+        // Of a mesh of curved cells the degree is known to the mesh only.
+        let Some(own) = degree.or(usual) else {
+            is_known = false;
+            continue;
+        };
         *degree = Some(own + 1);
         least = Some(least.map_or(own, |l| l.min(own)));
     }
-    Some((finer, least?))
+    if let (true, Ok(Plan::Mechanics(plan))) = (is_known, crate::plan::plan(&raised)) {
+        return Some((plan, 1.0 + 1.0 / least? as f64));
+    }
+    match crate::plan::halved(problem) {
+        Ok(Plan::Mechanics(plan)) if halves => Some((plan, 2.0)),
+        _ => None,
+    }
 }
 
 /// Estimates the errors of the last step of a run with so many unknowns, solved in a way, if that is affordable and has a solution.
@@ -66,18 +81,20 @@ pub fn estimate(
 ) {
     let plan = &model.plan;
     let in_space = plan.space == Space::ThreeD;
-    let Some((problem, degree)) = finer(&plan.head.problem) else { return };
-    let growth = (1.0 + 1.0 / degree as f64).powi(if in_space { 3 } else { 2 });
     let deforms = |body: &usize| !plan.system.bodies[*body].is_rigid();
     let cuts = in_space && plan.system.contacts.iter().any(|c| c.bodies().iter().all(deforms));
     let share = if solved == Solved::Condensed && !cuts { 1.0 } else { FACTORISED[usize::from(in_space)] };
     let affordable = share * AFFORDABLE;
-    if plan.system.contacts.is_empty() || growth * (unknowns * plan.times.len()) as f64 > affordable {
+    let work = (unknowns * plan.times.len()) as f64;
+    if plan.system.contacts.is_empty() || work > affordable {
+        return;
+    }
+    let Some((finer, growth)) = finer(&plan.head.problem) else { return };
+    if growth.powi(if in_space { 3 } else { 2 }) * work > affordable {
         return;
     }
     let taken: usize = record.iter().chain([&*step]).map(|s| s.iterations).sum();
     let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
-    let Ok(Plan::Mechanics(finer)) = crate::plan::plan(&problem) else { return };
     let Some(fine) = last_step(MechanicsModel::new(*finer), &mut quiet) else { return };
     for (name, found) in &mut step.contacts {
         let Some(fine) = fine.contacts.get(name) else { continue };

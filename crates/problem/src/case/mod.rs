@@ -36,7 +36,7 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
 fn source(name: &str, text: String, origins: Origins) -> Source {
     let spans = Spans::of(&text);
     let text = CaseText { name: name.to_string(), text, origins, spans };
-    Source { name: name.to_string(), text: Some(Arc::new(text)) }
+    Source { name: name.to_string(), text: Some(Arc::new(text)), ..Source::default() }
 }
 
 /// The text of a problem: the one it was read from, or else one that states the same.

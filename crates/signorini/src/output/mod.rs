@@ -28,4 +28,4 @@ pub mod system_pictures;
 pub mod tables;
 pub mod vtk;
 
-pub use folder::{Earlier, Folder, OutputError};
+pub use folder::{Earlier, Files, Folder, OutputError};

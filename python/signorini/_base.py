@@ -302,12 +302,19 @@ def _csv(columns: Mapping, path: str) -> bytes:
 def _same(a: Any, b: Any) -> bool:
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(np.asarray(a), np.asarray(b))
-    return type(a) is type(b) and a == b if not isinstance(a, (int, float)) else a == b
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    return bool(a == b)
 
 
 def _short(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"<array {value.shape} of {value.dtype}>"
-    text = repr(value)
-    return text if len(text) < 400 else f"{text[:390]}…"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key!r}: {_short(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list) and len(value) <= 100:
+        return "[" + ", ".join(map(_short, value)) + "]"
+    return repr(value) if not isinstance(value, (list, tuple)) or len(value) <= 100 else f"<list of {len(value)}>"
 

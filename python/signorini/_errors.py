@@ -20,7 +20,7 @@ class CaseError(SignoriniError, ValueError):
 
     >>> import signorini as sg
     >>> try:
-    ...     sg.check(sg.Problem(bodies={"ball": sg.Rigid(shape=sg.Sphere(center=[0, 0, 0], radius="2 qm"))}))
+    ...     sg.wrap([-2, 0, 0], [2, 0, 0], {"ball": sg.Sphere(center=[0, 0, 0], radius="2*q")})
     ... except sg.CaseError as error:
     ...     print(error.path)
     bodies.ball.rigid.shape.sphere.radius

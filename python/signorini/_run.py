@@ -42,20 +42,24 @@ def run(
 
     >>> import signorini as sg
     >>> result = sg.run(sg.gallery("string"), pictures=False)
-    >>> result.converged, round(result.contacts["touch"].force[2], 6)
-    (True, 0.183772)
+    >>> result.converged, float(result.contacts["touch"].force[2].round(6))
+    (True, 1.105573)
     """
     if not isinstance(problem, Problem):
         problem = Problem.from_toml(problem)
+    name, how, settings, files = stated(problem)
     if pictures is not None:
-        from ._nouns import Output
-
-        output = problem.output or Output()
-        output = Output(**output) if isinstance(output, Mapping) else output
-        problem = problem.replace(output=output.replace(pictures=bool(pictures)))
+        how, settings = _with_pictures(how, settings, bool(pictures))
     with _bar(progress) as told:
-        found = _native.solve(*stated(problem), _folder(folder), told)
+        found = _native.solve(name, how, settings, files, _folder(folder), told)
     return Result(found, None if folder is None else os.fspath(folder))
+
+
+def _with_pictures(how: Any, settings: list, pictures: bool) -> "tuple[Any, list]":
+    """What is stated, with `output.pictures`."""
+    if isinstance(how, str):
+        return how, [*settings, f"output.pictures={str(pictures).lower()}"]
+    return {**how, "output": {**how.get("output", {}), "pictures": pictures}}, settings
 
 
 def check(problem: Union[Problem, str, "os.PathLike[str]"]) -> Record:
@@ -64,8 +68,8 @@ def check(problem: Union[Problem, str, "os.PathLike[str]"]) -> Record:
     Raises CaseError with the path of the key for what is wrong.
 
     >>> import signorini as sg
-    >>> sg.check(sg.gallery("flat_disc")).unknowns
-    6241
+    >>> sg.check(sg.gallery("flat_disc")).cells
+    400
     """
     if not isinstance(problem, Problem):
         problem = Problem.from_toml(problem)
@@ -117,13 +121,14 @@ def wrap(
     *,
     frames: int = 1,
     folder: Folder = None,
+    pictures: Optional[bool] = None,
     **options: Any,
 ) -> Result:
     """The shortest path from a point to another over rigid bodies.
 
     from_, to: Points; expressions of t in [0, 1] where they move.
     around: The bodies, by name, in the order of the path: shapes or :class:`Rigid`.
-    frames: Number of times.
+    frames: Number of times in [0, 1].
     options: Further keys of :class:`ShortestPath`, such as ``friction``, ``tension``, ``via``; and of the problem, such
         as ``units``, ``constants``.
 
@@ -132,17 +137,19 @@ def wrap(
     >>> import signorini as sg
     >>> result = sg.wrap([-2, 0, 0.5], [2, 0, 0.5], {"drum": sg.Cylinder(point=[0, 0, 0], axis=[0, 1, 0], radius=1)})
     >>> round(result.paths[0].frames[0].length, 6)
-    4.527192
+    4.128483
     """
     own, rest = _split(ShortestPath, options)
     path = ShortestPath(from_=from_, to=to, around=list(around), **own)
     problem = Problem(
-        analysis="wrapping", bodies=_rigid(around), paths={"path": path}, frames=max(int(frames), 2), **rest
+        analysis="wrapping", bodies=_rigid(around), paths={"path": path}, frames=frames, **rest
     )
-    return run(problem, folder)
+    return run(problem, folder, pictures=pictures)
 
 
-def wind(mandrel: Any, start: Any, *, folder: Folder = None, **options: Any) -> Result:
+def wind(
+    mandrel: Any, start: Any, *, folder: Folder = None, pictures: Optional[bool] = None, **options: Any
+) -> Result:
     """The path of a yarn on a mandrel.
 
     mandrel: A shape, or :class:`Rigid`.
@@ -154,10 +161,13 @@ def wind(mandrel: Any, start: Any, *, folder: Folder = None, **options: Any) -> 
     """
     own, rest = _split(Winding, options)
     yarn = Winding(on="mandrel", start=start, **own)
-    return run(Problem(analysis="winding", bodies=_rigid({"mandrel": mandrel}), winding={"yarn": yarn}, **rest), folder)
+    problem = Problem(analysis="winding", bodies=_rigid({"mandrel": mandrel}), winding={"yarn": yarn}, **rest)
+    return run(problem, folder, pictures=pictures)
 
 
-def theorem(body: Any, path: Any, *, folder: Folder = None, **options: Any) -> Result:
+def theorem(
+    body: Any, path: Any, *, folder: Folder = None, pictures: Optional[bool] = None, **options: Any
+) -> Result:
     """A rope with friction on a given curve on a surface: the admissible tensions after Euler and Eytelwein, with friction
     along and across the rope.
 
@@ -179,7 +189,8 @@ def theorem(body: Any, path: Any, *, folder: Folder = None, **options: Any) -> R
     """
     own, rest = _split(RopeOnSurface, options)
     rope = RopeOnSurface(on="body", path=path, **own)
-    return run(Problem(analysis="euler_eytelwein", bodies=_rigid({"body": body}), ropes={"rope": rope}, **rest), folder)
+    problem = Problem(analysis="euler_eytelwein", bodies=_rigid({"body": body}), ropes={"rope": rope}, **rest)
+    return run(problem, folder, pictures=pictures)
 
 
 def _rigid(shapes: Mapping[str, Any]) -> dict:
@@ -252,7 +263,7 @@ def closest_points(a: Any, b: Any, *, local_minima: bool = False, folder: Union[
     >>> found = sg.closest_points([[0, 0, 2], [5, 0, 0]], {"type": "segment", "p0": [1, 0, 0], "p1": [3, 0, 0]})
     >>> found.distance
     array([2.23606798, 2.        ])
-    >>> list(found.feature_b)
+    >>> found.feature_b.tolist()
     ['vertex', 'vertex']
     """
     found = _native.closest_points(_partner(a, "a"), _partner(b, "b"), os.fspath(folder), bool(local_minima))
@@ -324,7 +335,7 @@ def explain(word: str) -> str:
 
     >>> import signorini as sg
     >>> print(sg.explain("membrane.tension").splitlines()[0])
-    bodies.NAME.membrane.tension *
+    bodies.NAME.membrane.tension (key: value, required)
     """
     return _native.explain(word)
 

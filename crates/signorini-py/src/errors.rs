@@ -1,5 +1,6 @@
 //! Errors as exceptions of the package.
 
+use crate::pool;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use signorini::output::OutputError;
@@ -59,7 +60,7 @@ impl From<SceneError> for Failure {
 /// # Errors
 /// Failures as exceptions.
 pub fn apart<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Failure> + Send) -> PyResult<T> {
-    guarded(py, |py| py.detach(work))
+    guarded(py, |py| py.detach(|| pool::within(work)))
 }
 
 /// Does some work; a panic becomes an exception.

@@ -4,6 +4,7 @@
 mod closest;
 mod errors;
 mod node;
+mod pool;
 mod progress;
 mod results;
 mod stated;
@@ -218,6 +219,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::pool::loaded();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

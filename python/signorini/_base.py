@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import os
-from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Sequence, Union
 
 import numpy as np
 
@@ -79,9 +79,9 @@ class Samples:
         self.origin = origin
 
     @classmethod
-    def of(cls, function: Callable[..., Any], *, min: "Array", max: "Array", counts: "Array") -> "Samples":
+    def of(cls, function: Callable[..., Any], *, min: "Array", max: "Array", counts: "Sequence[int]") -> "Samples":
         """Samples of a function `f(x, y)`, which is called once with two arrays of shape (counts[1], counts[0])."""
-        low, high, counts = np.asarray(min, float), np.asarray(max, float), [int(n) for n in counts]
+        low, high, counts = np.asarray(min, float), np.asarray(max, float), list(map(int, counts))
         if low.shape != (2,) or high.shape != (2,) or len(counts) != 2:
             raise ValueError("min, max and counts need two entries each, along x and y")
         x, y = np.meshgrid(*(np.linspace(a, b, n) for a, b, n in zip(low, high, counts)))
@@ -99,6 +99,9 @@ class Samples:
 
     __hash__ = None  # type: ignore[assignment]
 
+
+#: Ends of the keys that name files, for which arrays may stand.
+FILES = (".file", ".data", ".profile")
 
 #: A number, a quantity such as "0.1 mm", an expression, a callable that is one, or samples.
 Value = Union[float, int, str, Callable[..., Any], Samples]
@@ -131,10 +134,10 @@ class Tree:
             return self.samples(value, path)
         if callable(value) and not hasattr(value, "__array__"):
             return self.callable(value, path)
-        if isinstance(value, Mapping) and kind != "str":
-            return {key: self.of(v, _type_in(kind, key), f"{path}.{key}") for key, v in _named(value, path) if v is not None}
-        if kind == "str" and (isinstance(value, (bytes, Mapping)) or np.ndim(value) > 0):
+        if kind == "str" and path.endswith(FILES) and not isinstance(value, (str, os.PathLike)):
             return self.file(value, path)
+        if isinstance(value, Mapping):
+            return {key: self.of(v, _type_in(kind, key), f"{path}.{key}") for key, v in _named(value, path) if v is not None}
         return self.plain(value, _item_of(kind), path)
 
     def choice(self, value: Any, choices: dict, kind: str, path: str) -> Any:
@@ -144,7 +147,7 @@ class Tree:
                 raise CaseError(f"a {type(value).__name__} cannot stand here", path=path, help=f"valid are {', '.join(choices)}")
             below = f"{path}.{value._key}"
             if set(value._types) == {"value"}:
-                return {value._key: self.of(value.value, value._types["value"][1], below)}
+                return {value._key: self.of(getattr(value, "value"), value._types["value"][1], below)}
             return {value._key: self.table(value, below)}
         if isinstance(value, Mapping):
             return {key: self.of(v, choices.get(key, "any"), f"{path}.{key}") for key, v in _named(value, path)}
@@ -177,7 +180,11 @@ class Tree:
         if isinstance(value, bytes):
             return self.keep(path, "json", value)
         array = _numbers(value, path)
+        if array.ndim == 0:
+            raise CaseError(f"the name of a file, or an array of its numbers, is expected, not {value!r}", path=path)
         if path.endswith(".profile"):
+            if array.ndim != 2 or array.shape[1] != 2:
+                raise CaseError(f"an array of the shape {array.shape}: a profile has the shape (n, 2)", path=path)
             return self.keep(path, "csv", _csv({"r": array[:, 0], "z": array[:, 1]}, path))
         return self.keep(path, "npy", _npy(array))
 
@@ -200,7 +207,7 @@ class Tree:
             return self.array(value, kind, path)
         if hasattr(value, "__iter__") and not isinstance(value, (bytes, set, frozenset)):
             return self.plain(list(value), kind, path)
-        raise CaseError(f"a {type(value).__name__} cannot be stated in a case", path=path)
+        raise CaseError(f"a value of the type {type(value).__name__} cannot be stated in a case", path=path)
 
     def array(self, value: Any, kind: str, path: str) -> Any:
         """An array of numbers of any shape, strides and byte order; arrays of objects are lists."""

@@ -78,7 +78,7 @@ class Problem(ProblemKeys):
         """
         name, text = _text_of(source)
         settings = [str(setting) for setting in set]
-        made = _of_json(json.loads(_native.read(name, text, settings)), cls)
+        made: Problem = _of_json(json.loads(_native.read(name, text, settings)), cls)
         made._name = name
         made._read = (text, settings, Tree().table(made, ""))
         return made
@@ -125,7 +125,7 @@ class Problem(ProblemKeys):
         return f"<pre>{html.escape(self.to_toml())}</pre>"
 
 
-def stated(problem: Problem) -> tuple:
+def stated(problem: Problem) -> "tuple[str, Any, list[str], dict[str, bytes]]":
     """What the native part takes: name, text or tables, settings, files."""
     if not isinstance(problem, Problem):
         raise TypeError(f"a {type(problem).__name__} is no signorini.Problem; Problem.from_toml reads case files")
@@ -150,9 +150,9 @@ def _text_of(source: Union[str, os.PathLike]) -> "tuple[str, str]":
         raise CaseError(f"`{path}` is not text in UTF-8: {error}", file=path) from error
 
 
-def _of_json(value: Any, cls: type) -> Any:
+def _of_json(value: Any, cls: Any) -> Any:
     """A noun from what the reader of case files tells of it."""
-    made = object.__new__(cls)
+    made: Any = object.__new__(cls)
     for name, (key, kind) in cls._types.items():
         found = value.get(key)
         nothing = _left_out(found) or (isinstance(found, dict) and all(map(_left_out, found.values())) and "<" not in kind)

@@ -46,7 +46,7 @@ class Record(dict):
         return (_unpickled, (type(self), dict(self), self.__dict__))
 
 
-def _unpickled(cls: type, table: dict, attributes: dict) -> Any:
+def _unpickled(cls: Any, table: dict, attributes: dict) -> Any:
     made = cls.__new__(cls)
     dict.update(made, table)
     made.__dict__.update(attributes)
@@ -71,8 +71,9 @@ def _array(values: list) -> Optional[np.ndarray]:
         return np.array(values)
     if all(isinstance(value, list) for value in values):
         rows = [_array(value) for value in values]
-        if all(row is not None and row.shape == rows[0].shape for row in rows):
-            return np.array(rows)
+        known = [row for row in rows if row is not None]
+        if len(known) == len(rows) and len({row.shape for row in known}) == 1:
+            return np.array(known)
     return None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, List, Mapping, Optional, Type, Union
 
 import numpy as np
 
@@ -59,7 +59,9 @@ def _with_pictures(how: Any, settings: list, pictures: bool) -> "tuple[Any, list
     """What is stated, with `output.pictures`."""
     if isinstance(how, str):
         return how, [*settings, f"output.pictures={str(pictures).lower()}"]
-    return {**how, "output": {**how.get("output", {}), "pictures": pictures}}, settings
+    output = how.get("output", {})
+    # What is no table is told by the reader.
+    return {**how, "output": {**output, "pictures": pictures} if isinstance(output, dict) else output}, settings
 
 
 def check(problem: Union[Problem, str, "os.PathLike[str]"]) -> Record:
@@ -198,7 +200,7 @@ def _rigid(shapes: Mapping[str, Any]) -> dict:
     return {name: shape if is_body(shape) else Rigid(shape=shape) for name, shape in shapes.items()}
 
 
-def _split(noun: type, options: dict) -> "tuple[dict, dict]":
+def _split(noun: Type[Noun], options: dict) -> "tuple[dict, dict]":
     """The options that are keys of a noun, and the others."""
     own = {key: value for key, value in options.items() if key in noun._types}
     return own, {key: value for key, value in options.items() if key not in own}
@@ -220,6 +222,23 @@ class Closest:
     others: For each pair a table with ``distance``, ``point_a`` and ``point_b`` of the further minimisers.
     """
 
+    distance: np.ndarray
+    gap: np.ndarray
+    point_a: np.ndarray
+    point_b: np.ndarray
+    normal: np.ndarray
+    parameters_a: np.ndarray
+    parameters_b: np.ndarray
+    feature_a: np.ndarray
+    feature_b: np.ndarray
+    element_a: np.ndarray
+    element_b: np.ndarray
+    uniqueness: np.ndarray
+    certified: np.ndarray
+    certified_to: np.ndarray
+    lambda_min: np.ndarray
+    others: List[Record]
+
     def __init__(self, found: dict) -> None:
         real = lambda name: np.frombuffer(found[name], "<f8")
         whole = lambda name: np.frombuffer(found[name], "<i8")
@@ -237,7 +256,7 @@ class Closest:
         ends = np.concatenate([[0], np.cumsum(whole("others"))])
         further = [real("others_distance"), real("others_a").reshape(-1, 3), real("others_b").reshape(-1, 3)]
         names = ("distance", "point_a", "point_b")
-        self.others: List[Record] = []
+        self.others = []
         for a, b in zip(ends, ends[1:]):
             self.others.append(Record({name: values[a:b] for name, values in zip(names, further)}))
 

@@ -56,6 +56,18 @@ class Term:
             return Term(f"min(max({_text(args[0])}, {_text(args[1])}), {_text(args[2])})")
         raise Untraceable(f"numpy.{function.__name__}")
 
+    def __neg__(self) -> "Term":
+        return Term(f"(-{self.text})")
+
+    def __pos__(self) -> "Term":
+        return self
+
+    def __abs__(self) -> "Term":
+        return Term(f"abs({self.text})")
+
+    def __invert__(self) -> "Term":
+        return Term(f"(!{self.text})")
+
     def __bool__(self) -> bool:
         raise Untraceable("a branch that depends on the position: use numpy.where")
 
@@ -63,6 +75,7 @@ class Term:
         raise Untraceable("a number made of the position, as functions of `math` do: use those of numpy")
 
     __int__ = __index__ = __float__
+    __hash__ = None  # type: ignore[assignment]
 
     def __iter__(self) -> Any:
         raise Untraceable("a loop over the position")
@@ -79,11 +92,6 @@ for _name, _ufunc in {
     "and": np.bitwise_and, "or": np.bitwise_or,
 }.items():
     _operator(_name, _ufunc)
-Term.__neg__ = lambda self: Term(f"(-{self.text})")  # type: ignore[attr-defined]
-Term.__pos__ = lambda self: self  # type: ignore[attr-defined]
-Term.__abs__ = lambda self: Term(f"abs({self.text})")  # type: ignore[attr-defined]
-Term.__invert__ = lambda self: Term(f"(!{self.text})")  # type: ignore[attr-defined]
-Term.__hash__ = None  # type: ignore[assignment]
 
 
 def _text(value: Any) -> str:

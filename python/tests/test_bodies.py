@@ -98,6 +98,14 @@ def test_paths_on_bodies():
     assert rope.ropes[0].tension_limits == pytest.approx([100 * math.exp(-0.3 * math.pi), 100 * math.exp(0.3 * math.pi)])
 
 
+def test_a_profile_is_an_array():
+    z = np.linspace(-2, 2, 41)
+    drum = sg.Revolution(profile=np.column_stack([np.ones_like(z), z]), axis=[0, 0, 1])
+    result = sg.wrap([-2, 0.3, 0], [2, 0.3, 0], {"drum": drum}, pictures=False)
+    angle = math.pi - 2 * math.atan(0.15) - 2 * math.acos(1 / math.hypot(2, 0.3))
+    assert result.paths[0].frames[0].length == pytest.approx(2 * 3.09**0.5 + angle, rel=1e-6)
+
+
 def test_a_fit_takes_columns_of_arrays():
     problem = sg.gallery("blister")
     data = __import__("pathlib").Path(__file__).parents[2] / "gallery" / "blister" / problem.fit.data

@@ -104,7 +104,7 @@ fn answers<'py>(py: Python<'py>, found: &[(Projection, Option<f64>)]) -> PyResul
     let others: Vec<i64> = found.iter().map(|(p, _)| p.others.len() as i64).collect();
     out.set_item("others", wholes(py, &others)?)?;
     let listed = |of: &dyn Fn(&signorini_geometry::closest::ClosestPair) -> [f64; 3]| {
-        reals(py, &found.iter().flat_map(|(p, _)| &p.others).flat_map(|pair| of(pair)).collect::<Vec<_>>())
+        reals(py, &found.iter().flat_map(|(p, _)| &p.others).flat_map(of).collect::<Vec<_>>())
     };
     out.set_item("others_a", listed(&|pair| pair.a.point.into())?)?;
     out.set_item("others_b", listed(&|pair| pair.b.point.into())?)?;

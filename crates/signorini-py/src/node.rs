@@ -119,6 +119,8 @@ impl Numbers {
 #[derive(Debug)]
 pub struct Wrong {
     pub message: String,
+    /// Whether it is a word that chooses, not a key.
+    pub is_word: bool,
     /// From the innermost key outwards.
     path: Vec<Part>,
 }
@@ -144,7 +146,7 @@ impl std::error::Error for Wrong {}
 
 impl Error for Wrong {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self { message: message.to_string(), path: Vec::new() }
+        Self { message: message.to_string(), is_word: false, path: Vec::new() }
     }
 }
 
@@ -310,7 +312,7 @@ impl<'de> de::EnumAccess<'de> for Choice {
     fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Wrong> {
         let kind = seed.deserialize(Key(&self.key)).map_err(|wrong| match self.value {
             Some(_) => wrong.within(Part::Key(self.key.clone())),
-            None => wrong,
+            None => Wrong { is_word: true, ..wrong },
         })?;
         Ok((kind, self))
     }

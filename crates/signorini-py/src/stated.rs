@@ -48,7 +48,11 @@ impl Stated {
             How::Table(node) => {
                 let mut problem: Problem = node::read(node.clone()).map_err(|wrong| {
                     let told = toml_error::in_plain_words(&wrong.message);
-                    CaseError { key: Some(Box::new(wrong.key())), ..told }
+                    let message = match told.message.strip_prefix("unknown key ") {
+                        Some(word) if wrong.is_word => format!("unknown word {word}"),
+                        _ => told.message,
+                    };
+                    CaseError { message, key: Some(Box::new(wrong.key())), ..told }
                 })?;
                 problem.source.name.clone_from(&self.name);
                 problem

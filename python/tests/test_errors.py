@@ -85,6 +85,16 @@ def test_an_error_of_a_file_has_its_line(tmp_path):
         sg.run(case)
     assert error.value.path == "loads.press.normal" and error.value.line == case.read_text().splitlines().index('normal = "-p"') + 1
     assert error.value.value and str(case) in str(error.value)
+    for wrong, path in (('nromal = -1', "loads.press.nromal"), ("normal = true", "loads.press.normal")):
+        case.write_text(problems.membrane().to_toml().replace("normal = -1", wrong))
+        with pytest.raises(sg.CaseError) as error:
+            sg.Problem.from_toml(case)
+        assert error.value.path == path and error.value.line
+    for wrong, path in (('shape.hieght', "bodies.floor.rigid.shape.hieght"), ("shape", "bodies.floor.rigid.shape")):
+        case.write_text(problems.membrane().to_toml().replace("shape.height", wrong))
+        with pytest.raises(sg.CaseError) as error:
+            sg.Problem.from_toml(case)
+        assert error.value.path == path and error.value.line
     case.write_text("space = 'plane\n")
     with pytest.raises(sg.CaseError) as error:
         sg.Problem.from_toml(case)

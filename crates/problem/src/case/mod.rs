@@ -26,7 +26,11 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
     let (text, origins) = override_key::apply(name, text, overrides)?;
     let wrong = |e| origins.relocated(toml_error::from_toml(name, &text, &e));
     let table = DeTable::parse(&text).map_err(wrong)?.into_inner();
-    let wrong = |e: Wrong| origins.relocated(toml_error::told(name, &text, &e.message, e.span));
+    let wrong = |e: Wrong| {
+        let key = Some(Box::new(e.key())).filter(|key| !key.0.is_empty());
+        let told = toml_error::told(name, &text, &e.message, e.span);
+        origins.relocated(CaseError { key, ..told })
+    };
     let mut problem: Problem = reader::read(table).map_err(wrong)?;
     problem.source = source(name, text, origins);
     Ok(problem)

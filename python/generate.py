@@ -162,7 +162,7 @@ class Schema:
     def written(self):
         self.all = self.classes()
         root = {k: v for k, v in self.root.items() if k != "$defs"}
-        parts = [HEAD, self.table()]
+        parts = [HEAD, f"#: Hash of the schema, by which the tests in Rust know it.\nSCHEMA = {fingerprint(self.root)!r}", self.table()]
         for name, (about, key, fields, positional) in sorted(self.all.items()):
             parts.append(self.of_class(name, about, key, fields, positional))
         parts.append(self.of_class("ProblemKeys", root["description"], None, root, None))
@@ -230,6 +230,14 @@ def docstring(about, fields):
     return [*indented, '    """']
 
 
+def fingerprint(schema):
+    """FNV-1a of the schema as compact JSON with sorted keys, 64 bits."""
+    found = 0xCBF29CE484222325
+    for byte in json.dumps(schema, separators=(",", ":"), sort_keys=True, ensure_ascii=False).encode():
+        found = (found ^ byte) * 0x100000001B3 % 2**64
+    return f"{found:016x}"
+
+
 def generated(schema):
     """The text of signorini/_nouns.py."""
     return Schema(schema).written()
@@ -237,6 +245,8 @@ def generated(schema):
 
 def main():
     if "--installed" in sys.argv:
+        # Not the sources beside this script, which have no native part.
+        sys.path = [path for path in sys.path if pathlib.Path(path or ".").resolve() != pathlib.Path(__file__).parent.resolve()]
         from signorini import _native
 
         schema = json.loads(_native.schema())

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from ._base import Array, Value
 
 
+#: Hash of the schema, by which the tests in Rust know it.
+SCHEMA = 'be78cab57458e886'
+
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
     'Body': {'membrane': 'Membrane', 'rigid': 'Rigid', 'solid': 'Solid', 'cells': 'Cells', 'rope': 'Rope', 'beam': 'Beam'},

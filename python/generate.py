@@ -65,7 +65,8 @@ class Schema:
 
     def variants(self, definition):
         """Key, payload and description of each kind, where a definition is a table with one of several keys."""
-        listed = [a for a in definition.get("oneOf", []) if a.get("type") == "object" and len(a.get("properties", {})) == 1]
+        is_kind = lambda a: a.get("type") == "object" and len(a.get("properties", {})) == 1
+        listed = [a for a in definition.get("oneOf", []) if is_kind(a)]
         return [(*next(iter(a["properties"].items())), a.get("description", "")) for a in listed]
 
     def type_of(self, node):
@@ -82,7 +83,8 @@ class Schema:
         found = alternatives(node)
         if found:
             return "|".join(dict.fromkeys(self.type_of(a) for a in found))
-        return {"string": "str", "integer": "int", "number": "float", "boolean": "bool"}.get(kinds[0], "any") if kinds else "any"
+        plain = {"string": "str", "integer": "int", "number": "float", "boolean": "bool"}
+        return plain.get(kinds[0], "any") if kinds else "any"
 
     def named(self, name):
         definition = self.definitions[name]

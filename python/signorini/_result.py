@@ -249,10 +249,11 @@ class Result:
 
     @property
     def last(self) -> Record:
-        """The last increment."""
-        if not self.summary.get("steps"):
+        """The last increment that converged; the last one if none did. Raises LookupError if there is none at all."""
+        steps = self.summary.get("steps")
+        if not steps:
             raise LookupError(f"no increment was solved: {self.summary.verdict}")
-        return self.summary.steps[-1]
+        return next((step for step in reversed(steps) if step.converged), steps[-1])
 
     @property
     def contacts(self) -> Record:
@@ -352,21 +353,21 @@ class Result:
 
     def _repr_html_(self) -> str:
         rows = []
-        steps = self.summary.get("steps", [])
-        for name, contact in (steps[-1].get("contacts", {}) if steps else {}).items():
+        for name, contact in (self.last.get("contacts", {}) if self.summary.get("steps") else {}).items():
             cells = (name, _told(contact.get("force")), _told(contact.get("area")), _told(contact.get("max_pressure")))
             rows.append("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in cells) + "</tr>")
-        table = "<table><tr><th>contact</th><th>force</th><th>area</th><th>largest pressure</th></tr>" + "".join(rows) + "</table>"
+        head = "<tr><th>contact</th><th>force</th><th>area</th><th>largest pressure</th></tr>"
+        table = f"<table>{head}{''.join(rows)}</table>" if rows else ""
         warnings = "".join(f"<li>{html.escape(_message(w))}</li>" for w in self.summary.get("warnings", []))
         picture = self.picture()
         shown = ""
         if picture is not None:
             kind = "svg+xml" if picture.name.endswith(".svg") else "png"
-            shown = f'<img alt="result" style="max-width:100%" src="data:image/{kind};base64,{base64.b64encode(picture.data).decode()}">'
-        return (
-            f"<h4>{html.escape(str(self.summary.get('case', '')))}</h4><p>{html.escape(str(self.summary.get('verdict', '')))}</p>"
-            + (f"<ul>{warnings}</ul>" if warnings else "") + (table if rows else "") + shown
-        )
+            data = base64.b64encode(picture.data).decode()
+            shown = f'<img alt="result" style="max-width:100%" src="data:image/{kind};base64,{data}">'
+        title, verdict = (html.escape(str(self.summary.get(key, ""))) for key in ("case", "verdict"))
+        listed = f"<ul>{warnings}</ul>" if warnings else ""
+        return f"<h4>{title}</h4><p>{verdict}</p>{listed}{table}{shown}"
 
 
 def _at(record: Any, path: str) -> Any:

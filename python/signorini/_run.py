@@ -386,7 +386,8 @@ class Event:
         self.action = action
 
     def __repr__(self) -> str:
-        return f"Event({self.kind!r}, step={self.step}, time={self.time}, iteration={self.iteration}, residual={self.residual:.3g})"
+        figures = f"iteration={self.iteration}, residual={self.residual:.3g}"
+        return f"Event({self.kind!r}, step={self.step}, time={self.time}, {figures})"
 
 
 class _bar:

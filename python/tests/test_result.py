@@ -109,6 +109,7 @@ def test_progress_is_told_and_ends_a_run():
 
     result = sg.run(problems.block(), pictures=False, progress=interrupt)
     assert result.interrupted and not result.converged and result.steps[0].converged
+    assert result.last is result.steps[0] and result.contacts.touch.force[1] > 0
 
 
 def test_a_bar_is_shown():

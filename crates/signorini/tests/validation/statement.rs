@@ -68,13 +68,10 @@ fn a_run_is_kept_in_memory() {
 /// A file may exist in memory only.
 #[test]
 fn a_file_is_read_from_memory() {
-    let map = HeightMap { file: "floor.csv".into(), spacing: [1.0, 1.0].into(), ..HeightMap::default() };
     let mut problem = string("-0.1".into());
-    problem.bodies.insert("floor".into(), Body::Rigid(Rigid::new(Shape::HeightMap(map))));
-    assert!(plan(&problem).err().is_some_and(|e| e.message.contains("floor.csv")));
-    let files = [("floor.csv".to_string(), b"not, numbers".to_vec())];
-    problem.source.files = std::sync::Arc::new(files.into());
-    assert!(plan(&problem).err().is_some_and(|e| e.message.contains("line 1")));
+    assert!(problem.source.read("floor.csv").is_err());
+    problem.source.files = std::sync::Arc::new([("floor.csv".to_string(), b"0, 1".to_vec())].into());
+    assert_eq!(problem.source.read("floor.csv").unwrap(), b"0, 1");
 }
 
 /// A floor as a number, an expression, a function and samples is the same floor.

@@ -115,7 +115,8 @@ impl Contact {
         master.1.master(master.0.group.as_deref(), &master.1.start())?;
         let stiffness = if enforcement.takes_stress() {
             if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
-                let message = "Nitsche's method is for the surface of finite cells".to_string();
+                let message =
+                    "Nitsche's method is for surfaces of finite cells and of solids of small strain".to_string();
                 return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
             }
             sites.iter().map(|s| slave.1.stabilisation(s)).collect()

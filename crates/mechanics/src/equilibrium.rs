@@ -317,7 +317,7 @@ impl Equations for Problem<'_> {
             }
             let count = self.is_spin.len();
             if let Ok(step) = eliminated_step(&out.tangent, (count, &held), &right, &mut symbolic) {
-                self.symbolic = Some(symbolic);
+                (self.symbolic, self.solved) = (Some(symbolic), Solved::Eliminated);
                 return Ok(step);
             }
         }

@@ -21,6 +21,8 @@ pub enum Solved {
     Direct,
     /// By a factorisation of the linear bodies, once, and of a dense system of what is left.
     Condensed,
+    /// By a Cholesky factor with multipliers eliminated, which preconditions a Krylov method.
+    Eliminated,
     Iterative {
         /// Linear systems, and the most iterations that one of them took.
         systems: usize,

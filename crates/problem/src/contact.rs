@@ -17,7 +17,7 @@ pub struct Contact {
     pub all: Option<bool>,
     /// Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     pub method: Option<Method>,
-    /// Small or finite sliding of solids.
+    /// Sliding of solids on each other and on rigid bodies; any distance if left out.
     pub sliding: Option<Sliding>,
     /// Adhesion of the surfaces.
     pub adhesion: Option<Adhesion>,
@@ -54,7 +54,7 @@ pub struct CoulombFriction {
     /// Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along a rope
     /// or beam.
     pub axis: Option<Components>,
-    /// The side to which the axis is attached; `slave` if left out. For small sliding both are the same.
+    /// The side to which the axis is attached; `slave` if left out.
     pub on: Option<AxisOn>,
 }
 
@@ -77,9 +77,10 @@ pub struct TrescaFriction {
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Sliding {
-    /// The sliding distance is much smaller than a cell.
+    /// The sliding distance is much smaller than a cell: gap and slip are linear in the displacements. For contact by mortar
+    /// between solids of small strain, and of these with rigid bodies that do not move freely.
     Small,
-    /// Any sliding distance.
+    /// Any sliding distance: gap and slip are measured in the current configuration.
     Finite,
 }
 

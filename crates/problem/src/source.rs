@@ -2,6 +2,7 @@
 
 use super::KeyPath;
 use super::error::Place;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -28,6 +29,8 @@ pub struct Source {
     /// What it is called in messages: the path of its file. Files that it names are found from the folder of that.
     pub name: String,
     pub text: Option<Arc<dyn Text>>,
+    /// Contents of files that exist in memory only, by the names that the problem gives them. They replace files on disk.
+    pub files: Arc<BTreeMap<String, Vec<u8>>>,
 }
 
 impl Source {
@@ -42,6 +45,17 @@ impl Source {
             (Some(text), within) => Some(text.place(key, within)),
             (None, Some((value, span))) => Some(Place { name: key.to_string(), text: value.into(), span }),
             (None, None) => None,
+        }
+    }
+
+    /// The content of a file that a problem names.
+    ///
+    /// # Errors
+    /// A file that is not in memory and cannot be read.
+    pub fn read(&self, name: &str) -> std::io::Result<Vec<u8>> {
+        match self.files.get(name) {
+            Some(bytes) => Ok(bytes.clone()),
+            None => std::fs::read(self.folder().join(name)),
         }
     }
 

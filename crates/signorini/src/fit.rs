@@ -32,6 +32,14 @@ pub struct Fitted {
 
 /// Fits the unknowns of a case to its measurements, and writes the results into a folder.
 pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
+    fit_into(problem, || Folder::create(folder))
+}
+
+/// The same into a folder that is made once all is checked, or that is in memory.
+///
+/// # Errors
+/// Those of [`fit`].
+pub fn fit_into(problem: &Problem, folder: impl FnOnce() -> Result<Folder, OutputError>) -> Result<Fitted, RunError> {
     let Some(key) = &problem.fit else {
         return Err(CaseError::new(format!("{} has no table [fit]", problem.name()))
             .help("add  [fit]  data = \"measured.csv\"  time = \"pressure\"  radius = \"radius\"")
@@ -95,7 +103,7 @@ pub fn fit(problem: &Problem, folder: &Path) -> Result<Fitted, RunError> {
     model.check(problem, key, &measured)?;
     let relative = key.noise.unwrap_or_default() == Noise::Relative;
     let estimate = Estimate::new(&model, &measured.value, with_tension, relative, confidence);
-    let folder = Folder::create(folder)?;
+    let folder = folder()?;
     write(problem, &folder, &measured, &estimate, confidence).map_err(RunError::from)
 }
 

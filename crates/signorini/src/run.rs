@@ -13,12 +13,14 @@ pub(crate) mod record;
 mod sizes;
 pub(crate) mod strain;
 
+use crate::output::{Files, Folder};
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};
 use driver::{Model, drive, go_on};
 use outcome::not_resumed;
 pub use outcome::{Begun, Ending, Outcome, RunError};
 use planned::Planned;
+use record::Record;
 use serde_json::Value;
 pub use signorini_solve::{Iteration, Progress, Silent};
 use std::path::Path;
@@ -61,6 +63,27 @@ pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, 
     let mut model = model(problem)?;
     let record = record::in_memory(model.head());
     drive(&mut *model, record, 0, start, progress)
+}
+
+/// Solves a problem and keeps its states in memory, and what a run writes beside the fields: history, pictures. With a folder
+/// all files of a run are written there, else these few are kept in memory and returned.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn keep(
+    problem: &Problem,
+    folder: Option<&Path>,
+    progress: &mut dyn Progress,
+) -> Result<(Outcome, Files), RunError> {
+    let start = Instant::now();
+    let mut model = model(problem)?;
+    let record = match folder {
+        Some(folder) => record::begin(model.head(), folder)?,
+        None => Record::new(model.head(), Folder::in_memory()),
+    };
+    let folder = record.folder.clone();
+    let outcome = drive(&mut *model, Record { keeps_states: true, ..record }, 0, start, progress)?;
+    Ok((outcome, folder.take_files()))
 }
 
 fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Progress) -> Result<Outcome, RunError> {

@@ -26,7 +26,11 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
     let (text, origins) = override_key::apply(name, text, overrides)?;
     let wrong = |e| origins.relocated(toml_error::from_toml(name, &text, &e));
     let table = DeTable::parse(&text).map_err(wrong)?.into_inner();
-    let wrong = |e: Wrong| origins.relocated(toml_error::told(name, &text, &e.message, e.span));
+    let wrong = |e: Wrong| {
+        let key = Some(Box::new(e.key())).filter(|key| !key.0.is_empty());
+        let told = toml_error::told(name, &text, &e.message, e.span);
+        origins.relocated(CaseError { key, ..told })
+    };
     let mut problem: Problem = reader::read(table).map_err(wrong)?;
     problem.source = source(name, text, origins);
     Ok(problem)
@@ -36,7 +40,7 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
 fn source(name: &str, text: String, origins: Origins) -> Source {
     let spans = Spans::of(&text);
     let text = CaseText { name: name.to_string(), text, origins, spans };
-    Source { name: name.to_string(), text: Some(Arc::new(text)) }
+    Source { name: name.to_string(), text: Some(Arc::new(text)), ..Source::default() }
 }
 
 /// The text of a problem: the one it was read from, or else one that states the same.

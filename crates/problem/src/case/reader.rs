@@ -3,6 +3,7 @@
 //! It reads parsed TOML and says what the reader of the `toml` crate does. That one offers each type its values in several
 //! ways, for dates and places too, and every type of a problem would be compiled for each of these.
 
+use crate::key_path::{KeyPath, Part};
 use serde::de::{self, Deserialize, DeserializeSeed, Error, Expected, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
 use std::fmt;
@@ -23,11 +24,24 @@ pub fn read<'de, T: Deserialize<'de>>(table: DeTable<'de>) -> Result<T, Wrong> {
 pub struct Wrong {
     pub message: String,
     pub span: Option<Range<usize>>,
+    /// The keys on the way to it, from the innermost outwards.
+    path: Vec<Part>,
 }
 
 impl Wrong {
     fn at(message: impl Into<String>, span: Option<Range<usize>>) -> Self {
-        Self { message: message.into(), span }
+        Self { message: message.into(), span, path: Vec::new() }
+    }
+
+    /// The way to it.
+    pub fn key(&self) -> KeyPath {
+        KeyPath(self.path.iter().rev().cloned().collect())
+    }
+
+    /// It is at or below a key.
+    fn below(mut self, part: Part) -> Self {
+        self.path.push(part);
+        self
     }
 
     /// The innermost place counts.
@@ -88,7 +102,7 @@ impl<'de> Reader<'de> {
             }
             DeValue::Boolean(is) => Given::Bool(is),
             DeValue::Datetime(date) => Given::Table(Entries::of_date(date.to_string(), self.span.unwrap_or_default())),
-            DeValue::Array(list) => Given::List(List(list.into_iter())),
+            DeValue::Array(list) => Given::List(List { rest: list.into_iter(), index: 0 }),
             DeValue::Table(table) => Given::Table(Entries::of(table)),
         })
     }
@@ -224,25 +238,31 @@ fn float(digits: &str) -> Option<f64> {
 }
 
 /// The entries of a list.
-struct List<'de>(<DeArray<'de> as IntoIterator>::IntoIter);
+struct List<'de> {
+    rest: <DeArray<'de> as IntoIterator>::IntoIter,
+    /// How many were read.
+    index: usize,
+}
 
 impl<'de> de::SeqAccess<'de> for List<'de> {
     type Error = Wrong;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Wrong> {
-        self.0.next().map(|value| seed.deserialize(Reader::from(value))).transpose()
+        let Some(value) = self.rest.next() else { return Ok(None) };
+        self.index += 1;
+        seed.deserialize(Reader::from(value)).map(Some).map_err(|wrong| wrong.below(Part::Index(self.index - 1)))
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.0.len())
+        Some(self.rest.len())
     }
 }
 
 /// The entries of a table.
 struct Entries<'de> {
     rest: <DeTable<'de> as IntoIterator>::IntoIter,
-    /// The value of the key that was read last.
-    value: Option<Spanned<DeValue<'de>>>,
+    /// The key that was read last, and its value.
+    value: Option<(DeString<'de>, Spanned<DeValue<'de>>)>,
 }
 
 impl<'de> Entries<'de> {
@@ -262,15 +282,17 @@ impl<'de> de::MapAccess<'de> for Entries<'de> {
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Wrong> {
         let Some((key, value)) = self.rest.next() else { return Ok(None) };
-        self.value = Some(value);
-        let span = key.span();
-        seed.deserialize(Key(key.into_inner())).map(Some).map_err(|wrong| wrong.within(Some(span)))
+        let (span, key) = (key.span(), key.into_inner());
+        self.value = Some((key.clone(), value));
+        let read = seed.deserialize(Key(key.clone()));
+        read.map(Some).map_err(|wrong| wrong.within(Some(span)).below(Part::Key(key.into())))
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Wrong> {
-        let value = self.value.take().ok_or_else(|| Wrong::custom("a value without a key"))?;
+        let (key, value) = self.value.take().ok_or_else(|| Wrong::custom("a value without a key"))?;
         let span = value.span();
-        seed.deserialize(Reader::from(value)).map_err(|wrong| wrong.within(Some(span)))
+        let read = seed.deserialize(Reader::from(value));
+        read.map_err(|wrong| wrong.within(Some(span)).below(Part::Key(key.into())))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -327,19 +349,22 @@ impl<'de> de::EnumAccess<'de> for Choice<'de> {
     type Variant = Kind<'de>;
 
     fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Kind<'de>), Wrong> {
-        let kind = seed.deserialize(Key(self.key)).map_err(|wrong| wrong.within(self.span))?;
-        Ok((kind, Kind(self.value)))
+        let kind = seed.deserialize(Key(self.key.clone())).map_err(|wrong| match &self.value {
+            Some(_) => wrong.within(self.span).below(Part::Key(self.key.to_string())),
+            None => wrong,
+        })?;
+        Ok((kind, Kind(self.value.map(|value| (self.key, value)))))
     }
 }
 
 /// What stands under the key of a kind; nothing under a word.
-struct Kind<'de>(Option<Spanned<DeValue<'de>>>);
+struct Kind<'de>(Option<(DeString<'de>, Spanned<DeValue<'de>>)>);
 
 impl<'de> de::VariantAccess<'de> for Kind<'de> {
     type Error = Wrong;
 
     fn unit_variant(self) -> Result<(), Wrong> {
-        let Some(value) = self.0 else { return Ok(()) };
+        let Some((_, value)) = self.0 else { return Ok(()) };
         let message = match value.get_ref() {
             DeValue::Array(list) if list.is_empty() => return Ok(()),
             DeValue::Table(table) if table.is_empty() => return Ok(()),
@@ -352,7 +377,9 @@ impl<'de> de::VariantAccess<'de> for Kind<'de> {
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Wrong> {
         match self.0 {
-            Some(value) => seed.deserialize(Reader::from(value)),
+            Some((key, value)) => {
+                seed.deserialize(Reader::from(value)).map_err(|wrong| wrong.below(Part::Key(key.into())))
+            }
             None => Err(Wrong::invalid_type(Unexpected::UnitVariant, &"newtype variant")),
         }
     }

@@ -8,6 +8,11 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     told(name, text, error.message(), error.span())
 }
 
+/// The same of what a reader of anything but a text says: without a place.
+pub fn in_plain_words(message: &str) -> CaseError {
+    CaseError { place: None, ..told("", "", message, None) }
+}
+
 /// The same of what a reader of TOML says, and where.
 pub(crate) fn told(name: &str, text: &str, message: &str, span: Option<Range<usize>>) -> CaseError {
     let message = message.trim().replace('\n', " ");

@@ -17,7 +17,7 @@ pub struct Measurements {
 pub(super) fn read(problem: &Problem, key: &Fit, column: &String) -> Result<Measurements, CaseError> {
     let path = problem.source.folder().join(&key.data);
     let told = |message: String| problem.error(&key.data, format!("`{}`: {message}", path.display()));
-    let bytes = std::fs::read(&path).map_err(|e| told(format!("{e}")))?;
+    let bytes = problem.source.read(&key.data).map_err(|e| told(format!("{e}")))?;
     let rows = text_table::rows(&bytes).map_err(told)?;
     let Some((header, rows)) = rows.split_first() else { return Err(told("is empty".into())) };
     let names: Vec<&str> = header.entries.iter().collect();

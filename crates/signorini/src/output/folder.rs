@@ -1,7 +1,9 @@
 //! The result folder.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The file by which a folder is known as one of ours.
 pub const MARKER: &str = "log.jsonl";
@@ -82,13 +84,35 @@ pub fn date(seconds: u64) -> String {
     format!("{:04}-{month:02}-{day:02} at {hour:02}:{minute:02} UTC", year + 400 * era)
 }
 
+/// Files by their names within the folder of a run.
+pub type Files = BTreeMap<String, Vec<u8>>;
+
 /// A folder that belongs to one run; or nothing, where a program keeps the results in its memory.
 #[derive(Clone, Debug, Default)]
 pub struct Folder {
     path: Option<PathBuf>,
+    /// Files that are kept in memory instead.
+    memory: Option<Arc<Mutex<Files>>>,
 }
 
 impl Folder {
+    /// A folder in memory. Only what is written whole is kept: history, pictures, tables.
+    pub fn in_memory() -> Self {
+        Self { path: None, memory: Some(Arc::default()) }
+    }
+
+    /// Whether anything that is written is kept.
+    pub fn keeps(&self) -> bool {
+        self.path.is_some() || self.memory.is_some()
+    }
+
+    /// Takes the files that were kept in memory.
+    pub fn take_files(&self) -> Files {
+        let lock =
+            |memory: &Arc<Mutex<Files>>| std::mem::take(&mut *memory.lock().unwrap_or_else(PoisonError::into_inner));
+        self.memory.as_ref().map(lock).unwrap_or_default()
+    }
+
     /// Creates the folder, or empties that of an earlier run. A folder that holds anything else is refused.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let fail = |source| OutputError::Write { path: path.to_path_buf(), source };
@@ -108,14 +132,14 @@ impl Folder {
             }
         }
         std::fs::create_dir_all(path).map_err(fail)?;
-        let folder = Self { path: Some(path.to_path_buf()) };
+        let folder = Self { path: Some(path.to_path_buf()), memory: None };
         folder.write(MARKER, format!("{FIRST_LINE},\"version\":\"{}\"}}\n", env!("CARGO_PKG_VERSION")).as_bytes())?;
         Ok(folder)
     }
 
     /// The folder of an earlier run, as it is.
     pub fn of_earlier_run(path: &Path) -> Self {
-        Self { path: Some(path.to_path_buf()) }
+        Self { path: Some(path.to_path_buf()), memory: None }
     }
 
     /// Removes a file or a folder of ours; what cannot be removed stays.
@@ -131,6 +155,10 @@ impl Folder {
 
     /// Writes a file whole, or not at all.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
+        if let Some(memory) = &self.memory {
+            let mut files = memory.lock().unwrap_or_else(PoisonError::into_inner);
+            files.insert(name.to_string(), content.to_vec());
+        }
         let Some(folder) = &self.path else { return Ok(()) };
         let path = folder.join(name);
         let part = folder.join(format!("{name}.part"));

@@ -33,4 +33,4 @@ mod system_scene;
 pub mod tables;
 pub mod vtk;
 
-pub use folder::{Earlier, Folder, OutputError};
+pub use folder::{Earlier, Files, Folder, OutputError};

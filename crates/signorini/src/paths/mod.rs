@@ -52,14 +52,21 @@ impl Found {
 /// # Errors
 /// A path that is not found, a motion that is not finite, files that cannot be written.
 pub fn run(case: &PathCase, folder: &Path, progress: &mut dyn Progress) -> Result<Summary, SceneError> {
+    run_into(case, &Folder::create(folder)?, progress)
+}
+
+/// The same into a folder that exists, or that is in memory.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_into(case: &PathCase, folder: &Folder, progress: &mut dyn Progress) -> Result<Summary, SceneError> {
     let start = Instant::now();
-    let folder = Folder::create(folder)?;
     let text = crate::case::text(case.problem());
     folder.write("case.toml", text.as_bytes())?;
     let (method, found) = match &case.plan.task {
-        Task::Wrapping { frames, paths } => ("wrapping", wrapping::run(case, (*frames, paths), &folder, progress)?),
-        Task::Winding(list) => ("winding", winding::run(case, list, &folder, progress)?),
-        Task::EulerEytelwein(list) => ("euler_eytelwein", rope::run(case, list, &folder, progress)?),
+        Task::Wrapping { frames, paths } => ("wrapping", wrapping::run(case, (*frames, paths), folder, progress)?),
+        Task::Winding(list) => ("winding", winding::run(case, list, folder, progress)?),
+        Task::EulerEytelwein(list) => ("euler_eytelwein", rope::run(case, list, folder, progress)?),
     };
     let head = &case.plan.head;
     let mut summary = Summary {

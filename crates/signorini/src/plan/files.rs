@@ -13,7 +13,7 @@ impl Planner<'_> {
     /// A file named in the case, beside the case; the files of the gallery are carried in the program.
     pub(super) fn read_file(&self, name: &String) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
         let path = self.problem.source.folder().join(name);
-        match (std::fs::read(&path), crate::gallery::asset(name)) {
+        match (self.problem.source.read(name), crate::gallery::asset(name)) {
             (Ok(bytes), _) => Ok((path, bytes)),
             (Err(_), Some(bytes)) => Ok((path, bytes.to_vec())),
             (Err(e), None) => Err(self.problem.error(name, format!("`{}`: cannot be read: {e}", path.display()))),

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 use crate::mesh_file;
 
 use answered::Answered;
-use fields::FieldError;
+pub use fields::FieldError;
 use object::Object;
 use output::Output;
 pub use query::{PairQuery, QueriesError};
@@ -113,6 +113,14 @@ impl<'a> Case<'a> {
 /// What is wrong, with the path of the field.
 pub fn parse(text: &[u8], folder: &Path) -> Result<PairQuery, FieldError> {
     Case::parse(text)?.query(&Shapes::new(folder))
+}
+
+/// Builds a shape from JSON, written like a partner of a query; files that it names are looked for in `folder`.
+///
+/// # Errors
+/// What is wrong, with the path of the field.
+pub fn shape(text: &str, folder: &Path) -> Result<Shape, FieldError> {
+    shapes::build(text, folder)
 }
 
 /// A finite name for a case that has none.

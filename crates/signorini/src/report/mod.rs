@@ -118,20 +118,18 @@ pub struct StepReport {
     /// Findings of the audit: all that are reported or refused. For each other check, the finding closest to its limit.
     #[serde(default)]
     pub audit: Vec<Finding>,
-    /// Number of equilibrium solves on the final cells. For solids, number of iterations of the active set or of
-    /// Newton's method.
+    /// Number of equilibrium solves on the final cells. For solids, number of iterations of Newton's method.
     pub iterations: usize,
     /// Number of equilibrium solves on larger cells and in cut-backs before this state.
     pub iterations_before: usize,
     /// Linear solver. `direct`: factorisation. `condensed`: linear bodies are factorised once, and a dense system
-    /// contains what contact changes. `direct with krylov`: the tractions of a large contact zone are computed by a
-    /// Krylov method, each step a solve with the factors. `multigrid`: multigrid. `schwarz`: iterative with a Schwarz
-    /// preconditioner.
+    /// contains what contact changes. `direct with krylov`: the multipliers of large contact zones are eliminated
+    /// before a Cholesky factorisation, which preconditions a Krylov method. `multigrid`: multigrid. `schwarz`:
+    /// iterative with a Schwarz preconditioner.
     pub solver: String,
     /// Largest number of iterations of an iterative solver for one linear system.
     pub linear_iterations: Option<usize>,
-    /// Residual of each iteration, relative to its tolerance. For solids with small sliding, the number of nodes that
-    /// changed their status.
+    /// Residual of each iteration, relative to its tolerance.
     pub residual_history: Vec<f64>,
     /// Elastic energy of the bodies. For a membrane its potential energy, which is the elastic energy minus the work of
     /// the load.

@@ -36,7 +36,7 @@ pub enum Reason {
     /// The equilibrium is unstable, and no state at rest was found after a disturbance. Add a support to the body named
     /// in the message. `stability = "tell"` retains unstable states.
     UnstableState,
-    /// Newton's method for finite sliding did not converge. Use smaller increments.
+    /// Newton's method did not converge. Use smaller increments.
     Newton,
     /// The contact status alternates at the points named in the message. Use smaller increments, or finer cells at
     /// these points.

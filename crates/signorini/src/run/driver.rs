@@ -209,9 +209,11 @@ pub fn drive(
         let found = record.steps.last().map_or(reason, |step| step.reason);
         let last = index + 1 == count;
         if last || index % record.every == record.every - 1 || !found.is_converged() {
-            match record.folder.path() {
-                Some(_) => model.write_fields(index, &mut record)?,
-                None => record.states.extend(model.shown()),
+            if record.folder.path().is_some() {
+                model.write_fields(index, &mut record)?;
+            }
+            if record.keeps_states {
+                record.states.extend(model.shown());
             }
         }
         if !found.is_converged() || count == 1 {
@@ -310,7 +312,7 @@ fn stopped(record: &Record, model: &dyn Model) -> String {
 fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) -> Result<Summary, OutputError> {
     let states = record.history(model.begins_at_rest());
     record.folder.write("history.csv", history(&states, record.units.as_ref()).as_bytes())?;
-    if record.pictures && record.folder.path().is_some() {
+    if record.pictures && record.folder.keeps() {
         model.draw(record)?;
     }
     let answer = match reason {
@@ -333,7 +335,7 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
         method: model.method(),
         unknowns: record.unknowns,
         units: record.units.clone(),
-        first_picture: model.first_picture().filter(|_| record.pictures && record.folder.path().is_some()),
+        first_picture: model.first_picture().filter(|_| record.pictures && record.folder.keeps()),
         warnings: record.warnings.clone(),
         interpreted: record.interpreted.clone(),
         steps: record.steps.clone(),

@@ -33,7 +33,9 @@ pub struct Record {
     pub unknowns: usize,
     /// Time that the checks of states took.
     pub audit_seconds: f64,
-    /// What is kept in memory, where there is no folder.
+    /// Whether states are kept in memory.
+    pub keeps_states: bool,
+    /// The states that are kept in memory.
     pub states: Vec<ShownState>,
 }
 
@@ -55,6 +57,7 @@ impl Record {
             frames: Vec::new(),
             unknowns: 0,
             audit_seconds: 0.0,
+            keeps_states: false,
             states: Vec::new(),
         }
     }
@@ -156,7 +159,7 @@ pub fn begin(head: &Head, path: &std::path::Path) -> Result<Record, OutputError>
 
 /// The record of a run whose results stay in memory.
 pub fn in_memory(head: &Head) -> Record {
-    Record::new(head, Folder::default())
+    Record { keeps_states: true, ..Record::new(head, Folder::default()) }
 }
 
 /// The record of a run that goes on in a folder.

@@ -33,18 +33,25 @@ pub enum SceneError {
 /// # Errors
 /// A motion that is not finite, or files that cannot be written.
 pub fn run(scene: &Scene, folder: &Path, progress: &mut dyn Progress) -> Result<Value, SceneError> {
-    let start = std::time::Instant::now();
     // The first frame shows whether the scene can be run at all.
     scene.at(scene.times[0])?;
-    let folder = Folder::create(folder)?;
+    run_into(scene, &Folder::create(folder)?, progress)
+}
+
+/// The same into a folder that exists, or that is in memory.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_into(scene: &Scene, folder: &Folder, progress: &mut dyn Progress) -> Result<Value, SceneError> {
+    let start = std::time::Instant::now();
     folder.write("case.toml", scene.text.as_bytes())?;
     let count = scene.times.len();
     progress.step(0, count, scene.times[0]);
     let frames: Result<Vec<Frame>, CaseError> = scene.times.par_iter().map(|&t| scene.at(t)).collect();
     let frames = frames?;
-    output::write(scene, &frames, &folder)?;
+    output::write(scene, &frames, folder)?;
     progress.step(count, count, scene.times[count - 1]);
-    picture::draw(scene, &frames, &folder)?;
+    picture::draw(scene, &frames, folder)?;
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for frame in &frames {
         *kinds.entry(KINDS[frame.pairs[frame.governing].kind].1).or_default() += 1;

@@ -26,6 +26,15 @@ fn the_gallery_fits_the_schema_and_mistakes_do_not() {
 }
 
 #[test]
+fn the_classes_of_the_python_package_are_up_to_date() {
+    let text = schema::schema().to_string();
+    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let path = format!("{}/../../python/signorini/_nouns.py", env!("CARGO_MANIFEST_DIR"));
+    let classes = std::fs::read_to_string(path).expect("the classes");
+    assert!(classes.contains(&format!("'{hash:016x}'")), "run  signorini schema | python3 python/generate.py");
+}
+
+#[test]
 fn the_reference_is_up_to_date() {
     let path = format!("{}/../../docs/reference.md", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("the reference");

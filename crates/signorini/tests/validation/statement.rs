@@ -4,7 +4,7 @@ use signorini::case::read;
 use signorini::gallery::GALLERY;
 use signorini::plan::plan;
 use signorini::problem::*;
-use signorini::run::{Ending, solve};
+use signorini::run::{Ending, keep, solve};
 use signorini_solve::Silent;
 
 /// A membrane over a floor on a line, by its floor.
@@ -34,6 +34,44 @@ fn errors_tell_the_key() {
     let error = plan(&string("-0.1*q".into())).err().expect("an error");
     assert_eq!(error.key.expect("a key").to_string(), "bodies.floor.rigid.shape.height");
     assert_eq!(error.place.expect("a place").span, 5..6);
+}
+
+/// What a text states wrongly is told by its key, as by its place.
+#[test]
+fn errors_of_texts_tell_the_key() {
+    for (text, key) in [
+        ("[loads.press]\non = \"film\"\nnromal = 1", "loads.press.nromal"),
+        ("[bodies.belt.rope]\npath.points = [[0, true]]", "bodies.belt.rope.path.points[0][1]"),
+        ("[bodies.ball.rigid]\nshape.sphree = {}", "bodies.ball.rigid.shape.sphree"),
+        ("space = \"plain\"", "space"),
+    ] {
+        let error = read("case.toml", text, &[]).expect_err("an error");
+        assert!(error.place.is_some());
+        assert_eq!(error.key.expect("a key").to_string(), key);
+    }
+}
+
+/// A run that is kept in memory has its states, history and pictures; one in a folder has its states too.
+#[test]
+fn a_run_is_kept_in_memory() {
+    let problem = string("-0.1".into());
+    let (outcome, files) = keep(&problem, None, &mut Silent).unwrap();
+    assert_eq!((outcome.ending, outcome.states.len()), (Ending::Converged, 1));
+    assert!(files.contains_key("history.csv") && files.contains_key("pictures/deflection.png"));
+    assert_eq!(outcome.summary.first_picture.as_deref(), Some("pictures/deflection.png"));
+    let folder = tempfile::tempdir().unwrap();
+    let (again, files) = keep(&problem, Some(&folder.path().join("out")), &mut Silent).unwrap();
+    assert!(files.is_empty() && again.states.len() == 1 && folder.path().join("out/fields.pvd").exists());
+    assert_eq!(again.summary.steps, outcome.summary.steps);
+}
+
+/// A file may exist in memory only.
+#[test]
+fn a_file_is_read_from_memory() {
+    let mut problem = string("-0.1".into());
+    assert!(problem.source.read("floor.csv").is_err());
+    problem.source.files = std::sync::Arc::new([("floor.csv".to_string(), b"0, 1".to_vec())].into());
+    assert_eq!(problem.source.read("floor.csv").unwrap(), b"0, 1");
 }
 
 /// A floor as a number, an expression, a function and samples is the same floor.

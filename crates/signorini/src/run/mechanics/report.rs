@@ -30,6 +30,7 @@ fn solver(solved: Solved) -> (&'static str, Option<usize>) {
     match solved {
         Solved::Direct => (SOLVER, None),
         Solved::Condensed => ("condensed", None),
+        Solved::Eliminated => ("direct with krylov", None),
         Solved::Iterative { most_iterations, coarse, .. } => {
             let word = match coarse {
                 Coarse::Factorised => "schwarz",

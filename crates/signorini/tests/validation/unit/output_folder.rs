@@ -47,3 +47,14 @@ fn a_full_disk_is_told_and_leaves_the_earlier_file() {
     assert_eq!(std::fs::read(folder.path().unwrap().join("summary.json")).unwrap(), b"earlier");
     assert!(!folder.path().unwrap().join("summary.json.part").exists());
 }
+
+#[test]
+fn a_folder_in_memory_keeps_what_is_written_whole() {
+    let folder = Folder::in_memory();
+    assert!(folder.keeps() && folder.path().is_none() && !Folder::default().keeps());
+    folder.write("pictures/a.png", b"x").unwrap();
+    folder.log(&serde_json::json!({"event": "test"})).unwrap();
+    let files: Vec<_> = folder.clone().take_files().into_iter().collect();
+    assert_eq!(files, [("pictures/a.png".to_string(), b"x".to_vec())]);
+    assert!(folder.take_files().is_empty());
+}

@@ -1,0 +1,2462 @@
+"""The nouns of the case file as classes. Written by generate.py from the schema of the case file; do not edit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ._base import Noun
+
+if TYPE_CHECKING:
+    from typing import Any, Mapping, Optional, Sequence
+
+    from ._base import Array, Value
+
+
+#: Hash of the schema, by which the tests in Rust know it.
+SCHEMA = 'a55cc29f2109b67f'
+
+#: Kinds of every choice, and the type of what each holds.
+CHOICES = {
+    'Body': {'membrane': 'Membrane', 'rigid': 'Rigid', 'solid': 'Solid', 'cells': 'Cells', 'rope': 'Rope', 'beam': 'Beam'},
+    'CellIntegration': {'exact': 'ExactIntegration', 'sub_cells': 'SubCellIntegration'},
+    'Composed': {'implicit': 'ImplicitGeometry', 'box': 'BoxGeometry', 'image': 'ImageGeometry', 'union': '[<Composed>|<Shape>]', 'intersection': '[<Composed>|<Shape>]', 'difference': '[<Composed>|<Shape>]', 'offset': 'OffsetGeometry'},
+    'Control': {'time': 'Time', 'arc_length': 'ArcLength', 'area': 'AreaControl'},
+    'Domain': {'disc': 'Disc', 'ellipse': 'Ellipse', 'rectangle': 'Rectangle', 'polygon': 'Polygon', 'implicit': 'Implicit', 'interval': 'Interval'},
+    'Enforcement': {'multiplier': 'Multiplier', 'augmented_lagrangian': 'AugmentedLagrangian', 'nitsche': 'Nitsche', 'penalty': 'Penalty'},
+    'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction'},
+    'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff'},
+    'Mesh': {'grid': 'GridMesh', 'gmsh': 'DividedGmshMesh', 'arrays': 'MeshArrays'},
+    'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discrete_cell': 'DiscMethod'},
+    'Motion': {'fixed': 'Fixed', 'prescribed': 'Prescribed', 'free': 'FreeMotion'},
+    'Path': {'points': '[[Value]]', 'spline': 'SplinePath', 'file': 'PathFile', 'arc': 'ArcPath', 'helix': 'HelixPath', 'formula': 'FormulaPath'},
+    'PathFriction': {'coulomb': 'PathCoulomb'},
+    'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
+    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
+    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'arrays': 'MeshArrays'},
+}
+
+class ActiveSetMethod(Noun):
+    """For membranes: the classical nodal active set method, of degree 1.
+
+    start: Initial state of the iteration; `nested` if left out.
+    """
+
+    _key = 'active_set'
+    _types = {'start': ('start', 'str')}
+
+    def __init__(
+        self,
+        *,
+        start: Optional[str] = None,
+    ) -> None:
+        self.start = start
+
+
+class Adhesion(Noun):
+    """A table of keys.
+
+    energy: Adhesion energy, an energy per area.
+    """
+
+    _key = None
+    _types = {'energy': ('energy', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        energy: Value,
+    ) -> None:
+        self.energy = energy
+
+
+class ArcLength(Noun):
+    """Arc-length control.
+
+    size: Arc length of an increment. The area of the membrane and the duration of the step have length one.
+    """
+
+    _key = 'arc_length'
+    _types = {'size': ('size', 'float')}
+
+    def __init__(
+        self,
+        *,
+        size: float,
+    ) -> None:
+        self.size = size
+
+
+class ArcPath(Noun):
+    """An arc of a circle through three points.
+
+    points: Start point, a point between, and end point, lengths.
+    """
+
+    _key = 'arc'
+    _types = {'points': ('points', '[[Value]]')}
+
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[Value] | Array] | Array,
+    ) -> None:
+        self.points = points
+
+
+class AreaControl(Noun):
+    """Area control: the contact area is prescribed and the time is an unknown.
+
+    of: Name of the contact.
+    to: Contact area at the end of the step.
+    """
+
+    _key = 'area'
+    _types = {'of': ('of', 'str'), 'to': ('to', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        of: str,
+        to: Value,
+    ) -> None:
+        self.of = of
+        self.to = to
+
+
+class AugmentedLagrangian(Noun):
+    """Penalties with updated multipliers. The contact conditions hold exactly."""
+
+    _key = 'augmented_lagrangian'
+    _types = {}
+
+    def __init__(self) -> None:
+        pass
+
+
+class BaseUnits(Noun):
+    """A table of keys.
+
+    length: Unit of length, such as "mm".
+    force: Unit of force, such as "N".
+    time: Unit of time; "s" if left out.
+    """
+
+    _key = None
+    _types = {'length': ('length', 'str'), 'force': ('force', 'str'), 'time': ('time', 'str')}
+
+    def __init__(
+        self,
+        *,
+        length: str,
+        force: str,
+        time: Optional[str] = None,
+    ) -> None:
+        self.length = length
+        self.force = force
+        self.time = time
+
+
+class Beam(Noun):
+    """A geometrically exact beam with bending, torsion, shear and extension.
+
+    path: The stress-free path of the beam.
+    section: The shape of its section, or its stiffness.
+    cells: Number of elements; 20 if left out.
+    contact_points: Number of Gauss points in each element at which contact is tested; 4 if left out.
+    material: Material. Left out if the section gives the stiffness.
+    model: With shear and torsion, or free of torsion. The latter is for yarns and nets: round sections, initially
+        straight. `shear` if left out.
+    orientation: A direction near the first axis of the section at the start of the path.
+    radius: Radius used in contact; that of a circular section if left out.
+    """
+
+    _key = 'beam'
+    _types = {'path': ('path', '<Path>'), 'section': ('section', '<Section>'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'material': ('material', '<Material>'), 'model': ('model', 'str'), 'orientation': ('orientation', '[Value]'), 'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        path: Points | SplinePath | PathFile | ArcPath | HelixPath | FormulaPath | Sequence[Sequence[Value] | Array] | Array | Mapping[str, Any] | str,
+        section: CircleSection | RectangleSection | SectionStiffness | Mapping[str, Any] | str,
+        cells: Optional[int] = None,
+        contact_points: Optional[int] = None,
+        material: Optional[LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str] = None,
+        model: Optional[str] = None,
+        orientation: Optional[Sequence[Value] | Array] = None,
+        radius: Optional[Value] = None,
+    ) -> None:
+        self.path = path
+        self.section = section
+        self.cells = cells
+        self.contact_points = contact_points
+        self.material = material
+        self.model = model
+        self.orientation = orientation
+        self.radius = radius
+
+
+class BoxGeometry(Noun):
+    """A box along the axes.
+
+    min: The lower corner, lengths.
+    max: The upper corner, lengths.
+    """
+
+    _key = 'box'
+    _types = {'min': ('min', '[Value]'), 'max': ('max', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        min: Sequence[Value] | Array,
+        max: Sequence[Value] | Array,
+    ) -> None:
+        self.min = min
+        self.max = max
+
+
+class BoxMesh(Noun):
+    """A box of cells, uniform between two corners or graded along the axes. A map may move every point.
+
+    axes: Graded directions, in place of `min`, `max` and `cells`.
+    cells: Number of cells in each direction.
+    map: Map of the box: expressions of x, y and z for the new position of every point. Opposite sides that
+        coincide after mapping are joined and are no longer sides, so a ring is closed.
+    max: The upper corner, a length.
+    min: The lower corner, a length.
+    """
+
+    _key = 'box'
+    _types = {'axes': ('axes', '[MeshAxis]'), 'cells': ('cells', '[int]'), 'map': ('map', '[Value]'), 'max': ('max', '[Value]'), 'min': ('min', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        axes: Optional[Sequence[MeshAxis | Mapping[str, Any]] | Array] = None,
+        cells: Optional[Sequence[int] | Array] = None,
+        map: Optional[Sequence[Value] | Array] = None,
+        max: Optional[Sequence[Value] | Array] = None,
+        min: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.axes = axes
+        self.cells = cells
+        self.map = map
+        self.max = max
+        self.min = min
+
+
+class CellArrays(Noun):
+    """Cells of one shape.
+
+    shape: `triangle`, `quadrilateral`, `tetrahedron`, `hexahedron` or `wedge`.
+    nodes: Points of each cell, counted from zero, in the order of Gmsh: first the corners; for curved cells then
+        the nodes of edges, faces and interior, or of the edges only.
+    """
+
+    _key = None
+    _types = {'shape': ('shape', 'str'), 'nodes': ('nodes', '[[int]]')}
+
+    def __init__(
+        self,
+        *,
+        shape: str,
+        nodes: Sequence[Sequence[int] | Array] | Array,
+    ) -> None:
+        self.shape = shape
+        self.nodes = nodes
+
+
+class CellSurface(Noun):
+    """For finite cells: at points of the recovered boundary.
+
+    enforcement: Enforcement of the contact conditions. If left out: `multiplier`; `penalty` at quadrature points;
+        `nitsche` for finite cells.
+    """
+
+    _key = 'cell_surface'
+    _types = {'enforcement': ('enforcement', '<Enforcement>')}
+
+    def __init__(
+        self,
+        *,
+        enforcement: Optional[Multiplier | AugmentedLagrangian | Nitsche | Penalty | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.enforcement = enforcement
+
+
+class Cells(Noun):
+    """An elastic body of finite cells. The cells do not follow its boundary.
+
+    geometry: The region filled with material: a shape, a set operation on shapes, or an image.
+    mesh: The grid of cells around the body.
+    material: Material of the body: linear elastic.
+    degree: Polynomial degree, 1 to 8; 3 if left out.
+    fictitious: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left
+        out.
+    functions: Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this
+        total degree (`trunk`); `tensor` if left out.
+    groups: Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z >
+        0.9`. The recovered boundary is `boundary`; the sides of the grid are left, right, front, back, bottom and
+        top. If contact names the whole body, it includes the boundary and the sides, except those with a support.
+    integration: Quadrature of cut cells; `exact` if left out.
+    islands: Treatment of pieces that are not connected to the largest one; `refuse` if left out.
+    """
+
+    _key = 'cells'
+    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'fictitious': ('fictitious', 'Value'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str')}
+
+    def __init__(
+        self,
+        *,
+        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        mesh: CellsMesh | Mapping[str, Any],
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        degree: Optional[int] = None,
+        fictitious: Optional[Value] = None,
+        functions: Optional[str] = None,
+        groups: Optional[Mapping[str, Value]] = None,
+        integration: Optional[ExactIntegration | SubCellIntegration | Mapping[str, Any] | str] = None,
+        islands: Optional[str] = None,
+    ) -> None:
+        self.geometry = geometry
+        self.mesh = mesh
+        self.material = material
+        self.degree = degree
+        self.fictitious = fictitious
+        self.functions = functions
+        self.groups = groups
+        self.integration = integration
+        self.islands = islands
+
+
+class CellsGrid(Noun):
+    """A table of keys.
+
+    cell_size: Size of a cell, a length; replaces `cells`.
+    cells: Number of cells in each direction.
+    max: Upper corner, lengths; that of the geometry if left out.
+    min: Lower corner, lengths; that of the geometry if left out.
+    refine: Refinement: which cells are divided.
+    """
+
+    _key = None
+    _types = {'cell_size': ('cell_size', 'Value'), 'cells': ('cells', '[int]'), 'max': ('max', '[Value]'), 'min': ('min', '[Value]'), 'refine': ('refine', 'CellsRefine')}
+
+    def __init__(
+        self,
+        *,
+        cell_size: Optional[Value] = None,
+        cells: Optional[Sequence[int] | Array] = None,
+        max: Optional[Sequence[Value] | Array] = None,
+        min: Optional[Sequence[Value] | Array] = None,
+        refine: Optional[CellsRefine | Mapping[str, Any]] = None,
+    ) -> None:
+        self.cell_size = cell_size
+        self.cells = cells
+        self.max = max
+        self.min = min
+        self.refine = refine
+
+
+class CellsMesh(Noun):
+    """The grid of cells.
+
+    grid: A box of cells.
+    """
+
+    _key = None
+    _types = {'grid': ('grid', 'CellsGrid')}
+
+    def __init__(
+        self,
+        *,
+        grid: CellsGrid | Mapping[str, Any],
+    ) -> None:
+        self.grid = grid
+
+
+class CellsRefine(Noun):
+    """Refinement: which cells are divided.
+
+    boundary: Number of divisions of cells that the boundary cuts.
+    narrow: Number of divisions of cells in which the boundary faces itself, as in pores, gaps and tips.
+    near: Refinement near points, lines or other sets given by a distance.
+    """
+
+    _key = None
+    _types = {'boundary': ('boundary', 'int'), 'narrow': ('narrow', 'int'), 'near': ('near', '[NearRefine]')}
+
+    def __init__(
+        self,
+        *,
+        boundary: Optional[int] = None,
+        narrow: Optional[int] = None,
+        near: Optional[Sequence[NearRefine | Mapping[str, Any]] | Array] = None,
+    ) -> None:
+        self.boundary = boundary
+        self.narrow = narrow
+        self.near = near
+
+
+class CircleSection(Noun):
+    """A circular section.
+
+    radius: Radius, a length.
+    """
+
+    _key = 'circle'
+    _types = {'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        radius: Value,
+    ) -> None:
+        self.radius = radius
+
+
+class Cone(Noun):
+    """An infinite circular cone.
+
+    apex: Apex, lengths.
+    axis: Direction of the axis, into the body.
+    half_angle: Half of the opening angle, in radians.
+    """
+
+    _key = 'cone'
+    _types = {'apex': ('apex', '[Value]'), 'axis': ('axis', '[Value]'), 'half_angle': ('half_angle', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        apex: Sequence[Value] | Array,
+        axis: Sequence[Value] | Array,
+        half_angle: Value,
+    ) -> None:
+        self.apex = apex
+        self.axis = axis
+        self.half_angle = half_angle
+
+
+class Contact(Noun):
+    """A contact between bodies.
+
+    adhesion: Adhesion of the surfaces.
+    all: Whether contact is possible between all bodies.
+    between: The two bodies, slave first. Contact is tested at points of the slave.
+    friction: Friction law; frictionless if left out.
+    method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
+    sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
+    within: Self-contact: the rope, beam or solid.
+    """
+
+    _key = None
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'sliding': ('sliding', 'str'), 'within': ('within', 'str')}
+
+    def __init__(
+        self,
+        *,
+        adhesion: Optional[Adhesion | Mapping[str, Any]] = None,
+        all: Optional[bool] = None,
+        between: Optional[Sequence[str] | Array] = None,
+        friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | Mapping[str, Any] | str] = None,
+        method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
+        sliding: Optional[str] = None,
+        within: Optional[str] = None,
+    ) -> None:
+        self.adhesion = adhesion
+        self.all = all
+        self.between = between
+        self.friction = friction
+        self.method = method
+        self.sliding = sliding
+        self.within = within
+
+
+class CoulombFriction(Noun):
+    """Coulomb friction: the limit is proportional to the pressure.
+
+    mu: Coefficient of friction. In space two if it depends on the direction: along `axis` and across it.
+    axis: Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along
+        a rope or beam.
+    on: The side to which the axis is attached; `slave` if left out.
+    """
+
+    _key = 'coulomb'
+    _types = {'mu': ('mu', 'Value|[Value]'), 'axis': ('axis', 'Value|[Value]'), 'on': ('on', 'str')}
+
+    def __init__(
+        self,
+        *,
+        mu: Value | Sequence[Value] | Array,
+        axis: Optional[Value | Sequence[Value] | Array] = None,
+        on: Optional[str] = None,
+    ) -> None:
+        self.mu = mu
+        self.axis = axis
+        self.on = on
+
+
+class CurveMethod(Noun):
+    """For ropes and beams: at the nodes of straight elements, at Gauss points of smooth elements. Between two of
+    them, at crossing points and along lines.
+
+    enforcement: Enforcement of the contact conditions. If left out, `augmented_lagrangian` between two curves.
+    form: Contact between two curves: at crossing points, along lines, or blended; `blend` if left out.
+    """
+
+    _key = 'curve'
+    _types = {'enforcement': ('enforcement', '<Enforcement>'), 'form': ('form', 'str')}
+
+    def __init__(
+        self,
+        *,
+        enforcement: Optional[Multiplier | AugmentedLagrangian | Nitsche | Penalty | Mapping[str, Any] | str] = None,
+        form: Optional[str] = None,
+    ) -> None:
+        self.enforcement = enforcement
+        self.form = form
+
+
+class Cylinder(Noun):
+    """An infinite circular cylinder.
+
+    point: A point of the axis, lengths.
+    radius: Radius, a length.
+    axis: Direction of the axis. Left out in the plane, where the axis is normal to the plane.
+    """
+
+    _key = 'cylinder'
+    _types = {'point': ('point', '[Value]'), 'radius': ('radius', 'Value'), 'axis': ('axis', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        point: Sequence[Value] | Array,
+        radius: Value,
+        axis: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.point = point
+        self.radius = radius
+        self.axis = axis
+
+
+class Difference(Noun):
+    """Difference: the first geometry without all others."""
+
+    _key = 'difference'
+    _types = {'value': ('difference', '[<Composed>|<Shape>]')}
+
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+        self.value = value
+
+
+class Disc(Noun):
+    """A disc.
+
+    radius: Radius, a length.
+    center: Centre, lengths; the origin if left out.
+    """
+
+    _key = 'disc'
+    _types = {'radius': ('radius', 'Value'), 'center': ('center', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        radius: Value,
+        center: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.radius = radius
+        self.center = center
+
+
+class DiscMethod(Noun):
+    """For finite cells, or self-contact of them: discs (in space balls) on both surfaces, which repel each other.
+
+    centres: Position of the disc centres; `within` if left out.
+    penalty: Penalty between discs. If left out, a hundred times the stiffness of the bodies.
+    radius: Radius of the discs, a length; the spacing if left out. At least half the spacing, so that no disc
+        slips through, and less than half the thickness of the material.
+    spacing: Smallest distance between discs, a length. If left out, half of the radius; without a radius, the
+        distance that the functions can resolve.
+    """
+
+    _key = 'discrete_cell'
+    _types = {'centres': ('centres', 'str'), 'penalty': ('penalty', 'Penalty'), 'radius': ('radius', 'Value'), 'spacing': ('spacing', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        centres: Optional[str] = None,
+        penalty: Optional[Penalty | Mapping[str, Any]] = None,
+        radius: Optional[Value] = None,
+        spacing: Optional[Value] = None,
+    ) -> None:
+        self.centres = centres
+        self.penalty = penalty
+        self.radius = radius
+        self.spacing = spacing
+
+
+class DividedGmshMesh(Noun):
+    """A mesh from a file whose cells may be divided.
+
+    file: A .msh file of version 2.2 or 4.1, ASCII or binary. The path is relative to the folder of the case.
+    divisions: How often every cell is divided into four; 0 if left out. Curved sides are divided along their
+        curves. The meshes before each division are the coarser levels of a multigrid method.
+    group: The physical group that forms the body; all cells if left out.
+    move: Translation, applied after scaling and rotation; lengths.
+    refine: Local refinement: which cells are divided, at degree 1 and 2.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    """
+
+    _key = 'gmsh'
+    _types = {'file': ('file', 'str'), 'divisions': ('divisions', 'int'), 'group': ('group', 'str'), 'move': ('move', '[Value]'), 'refine': ('refine', 'Refine'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        divisions: Optional[int] = None,
+        group: Optional[str] = None,
+        move: Optional[Sequence[Value] | Array] = None,
+        refine: Optional[Refine | Mapping[str, Any]] = None,
+        scale: Optional[Value] = None,
+        turn: Optional[Value | Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.divisions = divisions
+        self.group = group
+        self.move = move
+        self.refine = refine
+        self.scale = scale
+        self.turn = turn
+
+
+class Ellipse(Noun):
+    """An ellipse along the axes.
+
+    semi_axes: Semi-axes along x and y, lengths.
+    center: Centre, lengths; the origin if left out.
+    """
+
+    _key = 'ellipse'
+    _types = {'semi_axes': ('semi_axes', '[Value]'), 'center': ('center', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        semi_axes: Sequence[Value] | Array,
+        center: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.semi_axes = semi_axes
+        self.center = center
+
+
+class Ellipsoid(Noun):
+    """An ellipsoid with semi-axes along the coordinate axes.
+
+    center: Centre, lengths.
+    semi_axes: Semi-axes, lengths.
+    """
+
+    _key = 'ellipsoid'
+    _types = {'center': ('center', '[Value]'), 'semi_axes': ('semi_axes', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        center: Sequence[Value] | Array,
+        semi_axes: Sequence[Value] | Array,
+    ) -> None:
+        self.center = center
+        self.semi_axes = semi_axes
+
+
+class ExactIntegration(Noun):
+    """With height functions, accurate to round-off.
+
+    points: Number of Gauss points in each direction of a smooth piece; four more than the degree if left out.
+    """
+
+    _key = 'exact'
+    _types = {'points': ('points', 'int')}
+
+    def __init__(
+        self,
+        *,
+        points: Optional[int] = None,
+    ) -> None:
+        self.points = points
+
+
+class Fit(Noun):
+    """Measurements of a contact, and the parameters to be computed from them.
+
+    data: A CSV file whose first line contains the column names.
+    time: Column of the time. Loads and motions of the case are functions of it.
+    area: Column of the contact area; replaces the radius.
+    confidence: Confidence level of the intervals; 0.95 if left out.
+    noise: Whether the scatter of the measurements is relative to their size; `relative` if left out.
+    radius: Column of the radius of contact, or of half its length.
+    unknown: Unknown parameters: `adhesion`, and optionally `tension`.
+    """
+
+    _key = None
+    _types = {'data': ('data', 'str'), 'time': ('time', 'str'), 'area': ('area', 'str'), 'confidence': ('confidence', 'float'), 'noise': ('noise', 'str'), 'radius': ('radius', 'str'), 'unknown': ('unknown', '[str]')}
+
+    def __init__(
+        self,
+        *,
+        data: str,
+        time: str,
+        area: Optional[str] = None,
+        confidence: Optional[float] = None,
+        noise: Optional[str] = None,
+        radius: Optional[str] = None,
+        unknown: Optional[Sequence[str] | Array] = None,
+    ) -> None:
+        self.data = data
+        self.time = time
+        self.area = area
+        self.confidence = confidence
+        self.noise = noise
+        self.radius = radius
+        self.unknown = unknown
+
+
+class Fixed(Noun):
+    """At rest."""
+
+    _key = 'fixed'
+    _types = {}
+
+    def __init__(self) -> None:
+        pass
+
+
+class FormulaPath(Noun):
+    """A parametric curve.
+
+    position: Position as expressions of the parameter `u`, lengths.
+    from_: The first value of `u`.
+    to: The last one.
+    """
+
+    _key = 'formula'
+    _types = {'position': ('position', '[Value]'), 'from_': ('from', 'Value'), 'to': ('to', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        position: Sequence[Value] | Array,
+        from_: Value,
+        to: Value,
+    ) -> None:
+        self.position = position
+        self.from_ = from_
+        self.to = to
+
+
+class FreeMotion(Noun):
+    """A free rigid body: six unknowns in space, three in the plane.
+
+    center: Reference point for forces and rotations, lengths; the centre of the shape if left out.
+    """
+
+    _key = 'free'
+    _types = {'center': ('center', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        center: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.center = center
+
+
+class GaussPoint(Noun):
+    """At quadrature points.
+
+    enforcement: Enforcement of the contact conditions. If left out: `multiplier`; `penalty` at quadrature points;
+        `nitsche` for finite cells.
+    """
+
+    _key = 'gauss_point'
+    _types = {'enforcement': ('enforcement', '<Enforcement>')}
+
+    def __init__(
+        self,
+        *,
+        enforcement: Optional[Multiplier | AugmentedLagrangian | Nitsche | Penalty | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.enforcement = enforcement
+
+
+class GmshMesh(Noun):
+    """A mesh from a file.
+
+    file: A .msh file of version 2.2 or 4.1, ASCII or binary. The path is relative to the folder of the case.
+    group: The physical group that forms the body; all cells if left out.
+    move: Translation, applied after scaling and rotation; lengths.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    """
+
+    _key = 'gmsh'
+    _types = {'file': ('file', 'str'), 'group': ('group', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        group: Optional[str] = None,
+        move: Optional[Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        turn: Optional[Value | Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.group = group
+        self.move = move
+        self.scale = scale
+        self.turn = turn
+
+
+class GridMesh(Noun):
+    """A background grid, given by the number of cells in each direction or by their size.
+
+    cell_size: Size of a cell, a length; replaces `cells`.
+    cells: Number of cells in each direction.
+    refine: Refinement: which cells are divided.
+    """
+
+    _key = 'grid'
+    _types = {'cell_size': ('cell_size', 'Value'), 'cells': ('cells', '[int]'), 'refine': ('refine', 'Refine')}
+
+    def __init__(
+        self,
+        *,
+        cell_size: Optional[Value] = None,
+        cells: Optional[Sequence[int] | Array] = None,
+        refine: Optional[Refine | Mapping[str, Any]] = None,
+    ) -> None:
+        self.cell_size = cell_size
+        self.cells = cells
+        self.refine = refine
+
+
+class Height(Noun):
+    """The body below a height, an expression of x and y."""
+
+    _key = 'height'
+    _types = {'value': ('height', 'Value')}
+
+    def __init__(self, value: Value) -> None:
+        self.value = value
+
+
+class HeightMap(Noun):
+    """Heights on a grid, from a file.
+
+    file: The file. The path is relative to the folder of the case.
+    spacing: Spacing of the columns (along x) and of the rows (along y).
+    move: Translation, applied after rotation; lengths.
+    origin: Position of the first height; the origin if left out.
+    scale: Height of one unit of the file; 1 if left out.
+    turn: Angle in radians by which the map is rotated about its origin.
+    """
+
+    _key = 'height_map'
+    _types = {'file': ('file', 'str'), 'spacing': ('spacing', '[Value]'), 'move': ('move', '[Value]'), 'origin': ('origin', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        spacing: Sequence[Value] | Array,
+        move: Optional[Sequence[Value] | Array] = None,
+        origin: Optional[Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        turn: Optional[Value] = None,
+    ) -> None:
+        self.file = file
+        self.spacing = spacing
+        self.move = move
+        self.origin = origin
+        self.scale = scale
+        self.turn = turn
+
+
+class HelixPath(Noun):
+    """A helix.
+
+    radius: Radius, a length.
+    pitch: Pitch: advance along the axis per turn, a length; 0 for a circle.
+    turns: Number of turns.
+    axis: Direction of the axis; z if left out.
+    center: A point of the axis, at the height of the start; the origin if left out.
+    towards: A direction from the axis towards the start point; any if left out.
+    """
+
+    _key = 'helix'
+    _types = {'radius': ('radius', 'Value'), 'pitch': ('pitch', 'Value'), 'turns': ('turns', 'Value'), 'axis': ('axis', '[Value]'), 'center': ('center', '[Value]'), 'towards': ('towards', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        radius: Value,
+        pitch: Value,
+        turns: Value,
+        axis: Optional[Sequence[Value] | Array] = None,
+        center: Optional[Sequence[Value] | Array] = None,
+        towards: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.radius = radius
+        self.pitch = pitch
+        self.turns = turns
+        self.axis = axis
+        self.center = center
+        self.towards = towards
+
+
+class ImageGeometry(Noun):
+    """A voxel image.
+
+    file: The image file. The path is relative to the folder of the case.
+    axes: Order of the directions in the file, the slowest first; `zyx` if left out.
+    counts: For a file without header: number of voxels along x, y and z.
+    numbers: For a file without header: number type, such as `u16` or `f32`. It requires `counts`.
+    origin: Corner of the first voxel, lengths. If left out, it is read from the file; the origin if the file has
+        none.
+    smoothing: Smoothing width of the image in voxels; 1 if left out.
+    spacing: Voxel size along x, y and z, lengths. If left out, it is read from the file, which must contain it.
+    threshold: Threshold: material is where the smoothly interpolated image is above this value.
+    youngs_modulus: Young's modulus as a function of the voxel `value`; replaces the threshold. There is no
+        material where it is zero.
+    """
+
+    _key = 'image'
+    _types = {'file': ('file', 'str'), 'axes': ('axes', 'str'), 'counts': ('counts', '[int]'), 'numbers': ('numbers', 'str'), 'origin': ('origin', '[Value]'), 'smoothing': ('smoothing', 'Value'), 'spacing': ('spacing', '[Value]'), 'threshold': ('threshold', 'Value'), 'youngs_modulus': ('youngs_modulus', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        axes: Optional[str] = None,
+        counts: Optional[Sequence[int] | Array] = None,
+        numbers: Optional[str] = None,
+        origin: Optional[Sequence[Value] | Array] = None,
+        smoothing: Optional[Value] = None,
+        spacing: Optional[Sequence[Value] | Array] = None,
+        threshold: Optional[Value] = None,
+        youngs_modulus: Optional[Value] = None,
+    ) -> None:
+        self.file = file
+        self.axes = axes
+        self.counts = counts
+        self.numbers = numbers
+        self.origin = origin
+        self.smoothing = smoothing
+        self.spacing = spacing
+        self.threshold = threshold
+        self.youngs_modulus = youngs_modulus
+
+
+class Implicit(Noun):
+    """The region in which an expression is negative.
+
+    negative_inside: An expression of x and y.
+    min: Lower corner of a box around the domain, lengths.
+    max: Upper corner of the box, lengths.
+    """
+
+    _key = 'implicit'
+    _types = {'negative_inside': ('negative_inside', 'Value'), 'min': ('min', '[Value]'), 'max': ('max', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        negative_inside: Value,
+        min: Sequence[Value] | Array,
+        max: Sequence[Value] | Array,
+    ) -> None:
+        self.negative_inside = negative_inside
+        self.min = min
+        self.max = max
+
+
+class ImplicitGeometry(Noun):
+    """The region in which an expression of x, y and z is negative.
+
+    negative_inside: An expression of x, y and z.
+    max: Upper corner of the box.
+    min: Lower corner of a box around the region, lengths; that of the grid if left out.
+    """
+
+    _key = 'implicit'
+    _types = {'negative_inside': ('negative_inside', 'Value'), 'max': ('max', '[Value]'), 'min': ('min', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        negative_inside: Value,
+        max: Optional[Sequence[Value] | Array] = None,
+        min: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.negative_inside = negative_inside
+        self.max = max
+        self.min = min
+
+
+class Intersection(Noun):
+    """Intersection: the points inside all geometries."""
+
+    _key = 'intersection'
+    _types = {'value': ('intersection', '[<Composed>|<Shape>]')}
+
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+        self.value = value
+
+
+class Interval(Noun):
+    """An interval: a string, or the range of the radius of an axisymmetric membrane.
+
+    from_: Start of the interval, a length; 0 for a whole disc.
+    to: End of the interval, a length.
+    """
+
+    _key = 'interval'
+    _types = {'from_': ('from', 'Value'), 'to': ('to', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        from_: Value,
+        to: Value,
+    ) -> None:
+        self.from_ = from_
+        self.to = to
+
+
+class LevelSetMethod(Noun):
+    """For membranes: the contact zone as a level set with exact fronts.
+
+    formulation: Formulation of the equilibrium next to a contact zone; `one_sided` if left out.
+    front_degree: Polynomial degree of the fronts; not available. The fronts have the degree of the membrane.
+    initial_zone: Initial contact zone of the iteration, given as a domain.
+    mode_count: With `modes = "fourier"`: maximum number of modes per front. If the cells of a front resolve
+        fewer, fewer are used, with a warning.
+    modes: Functions that describe the motion of fronts; `local` if left out, `fourier` with `formulation =
+        "published"`.
+    multiplier: With `formulation = "published"`: function space of the multiplier in the contact zone; `h1` if
+        left out.
+    multiplier_length: With `multiplier = "h1"`: length that weights the gradients of the multiplier; the size of
+        the membrane if left out.
+    transport: With `formulation = "published"`: transport of the fronts; `exact` if left out.
+    """
+
+    _key = 'inequality_level_set'
+    _types = {'formulation': ('formulation', 'str'), 'front_degree': ('front_degree', 'int'), 'initial_zone': ('initial_zone', '<Domain>'), 'mode_count': ('mode_count', 'int'), 'modes': ('modes', 'str'), 'multiplier': ('multiplier', 'str'), 'multiplier_length': ('multiplier_length', 'Value'), 'transport': ('transport', 'str')}
+
+    def __init__(
+        self,
+        *,
+        formulation: Optional[str] = None,
+        front_degree: Optional[int] = None,
+        initial_zone: Optional[Disc | Ellipse | Rectangle | Polygon | Implicit | Interval | Mapping[str, Any] | str] = None,
+        mode_count: Optional[int] = None,
+        modes: Optional[str] = None,
+        multiplier: Optional[str] = None,
+        multiplier_length: Optional[Value] = None,
+        transport: Optional[str] = None,
+    ) -> None:
+        self.formulation = formulation
+        self.front_degree = front_degree
+        self.initial_zone = initial_zone
+        self.mode_count = mode_count
+        self.modes = modes
+        self.multiplier = multiplier
+        self.multiplier_length = multiplier_length
+        self.transport = transport
+
+
+class LevelSetShape(Noun):
+    """A body where an expression of x, y and z is negative, within a box.
+
+    negative_inside: An expression of x, y and z.
+    min: Lower corner of a box around the relevant part of the surface, lengths.
+    max: The upper corner of the box, lengths.
+    cells: Number of grid cells along the longest side of the box, used for the search of closest points; 64 if
+        left out.
+    """
+
+    _key = 'level_set'
+    _types = {'negative_inside': ('negative_inside', 'Value'), 'min': ('min', '[Value]'), 'max': ('max', '[Value]'), 'cells': ('cells', 'int')}
+
+    def __init__(
+        self,
+        *,
+        negative_inside: Value,
+        min: Sequence[Value] | Array,
+        max: Sequence[Value] | Array,
+        cells: Optional[int] = None,
+    ) -> None:
+        self.negative_inside = negative_inside
+        self.min = min
+        self.max = max
+        self.cells = cells
+
+
+class Limits(Noun):
+    """Limits of the computation. At the first limit the run stops after the current iteration and stores its
+    results.
+
+    max_iterations: Number of iterations over all increments.
+    max_time: Wall time in seconds.
+    """
+
+    _key = None
+    _types = {'max_iterations': ('max_iterations', 'int'), 'max_time': ('max_time', 'float')}
+
+    def __init__(
+        self,
+        *,
+        max_iterations: Optional[int] = None,
+        max_time: Optional[float] = None,
+    ) -> None:
+        self.max_iterations = max_iterations
+        self.max_time = max_time
+
+
+class LinearElastic(Noun):
+    """Isotropic, linear elastic.
+
+    youngs_modulus: Young's modulus, a force per area.
+    poissons_ratio: Poisson's ratio, above -1 and below 0.5.
+    """
+
+    _key = 'linear_elastic'
+    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        youngs_modulus: Value,
+        poissons_ratio: Value,
+    ) -> None:
+        self.youngs_modulus = youngs_modulus
+        self.poissons_ratio = poissons_ratio
+
+
+class Load(Noun):
+    """A load.
+
+    on: Body or group of a body: `BODY` or `BODY:GROUP`.
+    body_force: Force per volume along each axis; per length for a rope or beam.
+    force: Resultant force along each axis, distributed uniformly.
+    moment: Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
+    normal: For a membrane: force per area along +z.
+    pressure: Force per area against the outward normal.
+    tension: Tensile force along the end of a rope or beam.
+    traction: Force per area along each axis.
+    """
+
+    _key = None
+    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        body_force: Optional[Sequence[Value] | Array] = None,
+        force: Optional[Sequence[Value] | Array] = None,
+        moment: Optional[Sequence[Value] | Array] = None,
+        normal: Optional[Value] = None,
+        pressure: Optional[Value] = None,
+        tension: Optional[Value] = None,
+        traction: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.on = on
+        self.body_force = body_force
+        self.force = force
+        self.moment = moment
+        self.normal = normal
+        self.pressure = pressure
+        self.tension = tension
+        self.traction = traction
+
+
+class Membrane(Noun):
+    """An elastic membrane under tension.
+
+    mesh: The mesh or background grid.
+    tension: Force per length; a value or an expression of position.
+    degree: Polynomial degree, 1 to 6.
+    domain: The domain of the membrane. Left out if the mesh is read from a file.
+    """
+
+    _key = 'membrane'
+    _types = {'mesh': ('mesh', '<Mesh>'), 'tension': ('tension', 'Value'), 'degree': ('degree', 'int'), 'domain': ('domain', '<Domain>')}
+
+    def __init__(
+        self,
+        *,
+        mesh: GridMesh | DividedGmshMesh | MeshArrays | Mapping[str, Any] | str,
+        tension: Value,
+        degree: Optional[int] = None,
+        domain: Optional[Disc | Ellipse | Rectangle | Polygon | Implicit | Interval | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.mesh = mesh
+        self.tension = tension
+        self.degree = degree
+        self.domain = domain
+
+
+class MeshArrays(Noun):
+    """A mesh of a body: points, cells, and named parts.
+
+    points: Coordinates of the points in the base unit of length: two per point in the plane, three in space.
+    cells: The cells, by shape.
+    groups: Named groups, each a list of points. A side or cell belongs to a group if all its corners are in the
+        list.
+    """
+
+    _key = 'arrays'
+    _types = {'points': ('points', '[[float]]'), 'cells': ('cells', '[CellArrays]'), 'groups': ('groups', '{[int]}')}
+
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[float] | Array] | Array,
+        cells: Sequence[CellArrays | Mapping[str, Any]] | Array,
+        groups: Optional[Mapping[str, Sequence[int] | Array]] = None,
+    ) -> None:
+        self.points = points
+        self.cells = cells
+        self.groups = groups
+
+
+class MeshAxis(Noun):
+    """One direction of a graded box: segments that end at `to`, each with its number of cells. Each cell is `growth`
+    times as long as the one before.
+
+    from_: Start of the direction, a length.
+    to: End of each segment, lengths.
+    cells: Number of cells of each segment.
+    growth: Ratio of the length of a cell to that of the cell before it, for each segment; 1 if left out.
+    """
+
+    _key = None
+    _types = {'from_': ('from', 'Value'), 'to': ('to', '[Value]'), 'cells': ('cells', '[int]'), 'growth': ('growth', '[float]')}
+
+    def __init__(
+        self,
+        *,
+        from_: Value,
+        to: Sequence[Value] | Array,
+        cells: Sequence[int] | Array,
+        growth: Optional[Sequence[float] | Array] = None,
+    ) -> None:
+        self.from_ = from_
+        self.to = to
+        self.cells = cells
+        self.growth = growth
+
+
+class Mortar(Noun):
+    """Between solids, or of a solid with a rigid body: mortar with dual multipliers, integrated over exact segments.
+
+    enforcement: Enforcement of the contact conditions. If left out: `multiplier`; `penalty` at quadrature points;
+        `nitsche` for finite cells.
+    """
+
+    _key = 'mortar'
+    _types = {'enforcement': ('enforcement', '<Enforcement>')}
+
+    def __init__(
+        self,
+        *,
+        enforcement: Optional[Multiplier | AugmentedLagrangian | Nitsche | Penalty | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.enforcement = enforcement
+
+
+class Multiplier(Noun):
+    """Lagrange multipliers. The contact conditions hold exactly."""
+
+    _key = 'multiplier'
+    _types = {}
+
+    def __init__(self) -> None:
+        pass
+
+
+class NearRefine(Noun):
+    """A table of keys.
+
+    distance: A distance as an expression of x, y and z, such as `hypot(x, y)`.
+    within: Cells nearer than this distance are divided, a length.
+    levels: Number of divisions.
+    """
+
+    _key = None
+    _types = {'distance': ('distance', 'Value'), 'within': ('within', 'Value'), 'levels': ('levels', 'int')}
+
+    def __init__(
+        self,
+        *,
+        distance: Value,
+        within: Value,
+        levels: int,
+    ) -> None:
+        self.distance = distance
+        self.within = within
+        self.levels = levels
+
+
+class NeoHooke(Noun):
+    """Isotropic, hyperelastic: neo-Hookean; requires `strain = "finite"`.
+
+    youngs_modulus: Young's modulus, a force per area.
+    poissons_ratio: Poisson's ratio, above -1 and below 0.5.
+    """
+
+    _key = 'neo_hooke'
+    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        youngs_modulus: Value,
+        poissons_ratio: Value,
+    ) -> None:
+        self.youngs_modulus = youngs_modulus
+        self.poissons_ratio = poissons_ratio
+
+
+class Nitsche(Noun):
+    """Nitsche's method: consistent, without multipliers."""
+
+    _key = 'nitsche'
+    _types = {}
+
+    def __init__(self) -> None:
+        pass
+
+
+class Node(Noun):
+    """At nodes.
+
+    enforcement: Enforcement of the contact conditions. If left out: `multiplier`; `penalty` at quadrature points;
+        `nitsche` for finite cells.
+    """
+
+    _key = 'node'
+    _types = {'enforcement': ('enforcement', '<Enforcement>')}
+
+    def __init__(
+        self,
+        *,
+        enforcement: Optional[Multiplier | AugmentedLagrangian | Nitsche | Penalty | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.enforcement = enforcement
+
+
+class Nurbs(Noun):
+    """NURBS surfaces from a JSON file.
+
+    file: The file. The path is relative to the folder of the case.
+    move: Translation, applied after scaling and rotation; lengths.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    """
+
+    _key = 'nurbs'
+    _types = {'file': ('file', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        move: Optional[Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        turn: Optional[Value | Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.move = move
+        self.scale = scale
+        self.turn = turn
+
+
+class OffsetGeometry(Noun):
+    """Offset: the points nearer to a geometry than a distance; if the distance is negative, the points deeper inside
+    it.
+
+    of: The geometry that is offset.
+    distance: The offset distance, a length.
+    """
+
+    _key = 'offset'
+    _types = {'of': ('of', '<Composed>|<Shape>'), 'distance': ('distance', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        distance: Value,
+    ) -> None:
+        self.of = of
+        self.distance = distance
+
+
+class OnBody(Noun):
+    """A point attached to a body.
+
+    body: Name of the body.
+    point: Position before the body moves, lengths.
+    """
+
+    _key = None
+    _types = {'body': ('body', 'str'), 'point': ('point', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        body: str,
+        point: Sequence[Value] | Array,
+    ) -> None:
+        self.body = body
+        self.point = point
+
+
+class Output(Noun):
+    """What is written to disk.
+
+    every: Number of increments between stored fields.
+    moments_about: Point about which moments of supports, loads and contacts are reported, lengths; the origin if
+        left out.
+    pictures: Whether pictures are drawn; true if left out.
+    probes: Points whose history is recorded.
+    """
+
+    _key = None
+    _types = {'every': ('every', 'int'), 'moments_about': ('moments_about', '[Value]'), 'pictures': ('pictures', 'bool'), 'probes': ('probes', '{[Value]}')}
+
+    def __init__(
+        self,
+        *,
+        every: Optional[int] = None,
+        moments_about: Optional[Sequence[Value] | Array] = None,
+        pictures: Optional[bool] = None,
+        probes: Optional[Mapping[str, Sequence[Value] | Array]] = None,
+    ) -> None:
+        self.every = every
+        self.moments_about = moments_about
+        self.pictures = pictures
+        self.probes = probes
+
+
+class Paraboloid(Noun):
+    """A paraboloid of revolution.
+
+    apex: Apex, lengths.
+    axis: Direction of the axis, into the body.
+    radius: Radius of curvature at the apex, a length.
+    """
+
+    _key = 'paraboloid'
+    _types = {'apex': ('apex', '[Value]'), 'axis': ('axis', '[Value]'), 'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        apex: Sequence[Value] | Array,
+        axis: Sequence[Value] | Array,
+        radius: Value,
+    ) -> None:
+        self.apex = apex
+        self.axis = axis
+        self.radius = radius
+
+
+class PathCoulomb(Noun):
+    """Coulomb friction.
+
+    mu: Coefficient of friction. Two if it depends on the direction: along and across the rope, or along and
+        across `axis`.
+    axis: A direction attached to the surface (expressions of x, y and z), projected on it; along the rope if left
+        out.
+    """
+
+    _key = 'coulomb'
+    _types = {'mu': ('mu', 'Value|[Value]'), 'axis': ('axis', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        mu: Value | Sequence[Value] | Array,
+        axis: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.mu = mu
+        self.axis = axis
+
+
+class PathFile(Noun):
+    """Points from a file, joined by straight segments or a spline.
+
+    file: A CSV file with columns x, y, z. The path is relative to the folder of the case.
+    closed: Whether the curve is closed.
+    move: Translation, applied after scaling and rotation; lengths.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    spline: Whether the points are joined by a spline; false if left out.
+    turn: Rotation vector in radians about the origin of the file, applied after scaling.
+    """
+
+    _key = 'file'
+    _types = {'file': ('file', 'str'), 'closed': ('closed', 'bool'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'spline': ('spline', 'bool'), 'turn': ('turn', 'Value|[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        closed: Optional[bool] = None,
+        move: Optional[Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        spline: Optional[bool] = None,
+        turn: Optional[Value | Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.closed = closed
+        self.move = move
+        self.scale = scale
+        self.spline = spline
+        self.turn = turn
+
+
+class Penalty(Noun):
+    """A penalty is given by the penetration that it admits, not by a stiffness.
+
+    wanted_penetration: Penetration at the largest pressure, a length.
+    """
+
+    _key = 'penalty'
+    _types = {'wanted_penetration': ('wanted_penetration', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        wanted_penetration: Optional[Value] = None,
+    ) -> None:
+        self.wanted_penetration = wanted_penetration
+
+
+class Plane(Noun):
+    """A half space bounded by a plane.
+
+    point: A point of the plane, lengths.
+    normal: Normal, out of the body. Its length has no influence.
+    """
+
+    _key = 'plane'
+    _types = {'point': ('point', '[Value]'), 'normal': ('normal', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        point: Sequence[Value] | Array,
+        normal: Sequence[Value] | Array,
+    ) -> None:
+        self.point = point
+        self.normal = normal
+
+
+class Points(Noun):
+    """Straight segments from point to point."""
+
+    _key = 'points'
+    _types = {'value': ('points', '[[Value]]')}
+
+    def __init__(self, value: Sequence[Sequence[Value] | Array] | Array) -> None:
+        self.value = value
+
+
+class PolarOpening(Noun):
+    """A table of keys.
+
+    radius: Radius of the edge of the band. The edge is half a band width from the centreline.
+    """
+
+    _key = None
+    _types = {'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        radius: Value,
+    ) -> None:
+        self.radius = radius
+
+
+class Polygon(Noun):
+    """A polygon.
+
+    points: The corners in order, lengths.
+    """
+
+    _key = 'polygon'
+    _types = {'points': ('points', '[[Value]]')}
+
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[Value] | Array] | Array,
+    ) -> None:
+        self.points = points
+
+
+class Prescribed(Noun):
+    """Prescribed translation and rotation.
+
+    displacement: Displacement along each axis, lengths, as expressions of t.
+    rotation: Rotation vector in radians, as expressions of t.
+    """
+
+    _key = 'prescribed'
+    _types = {'displacement': ('displacement', '[Value]'), 'rotation': ('rotation', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        displacement: Optional[Sequence[Value] | Array] = None,
+        rotation: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.displacement = displacement
+        self.rotation = rotation
+
+
+class Rectangle(Noun):
+    """A rectangle along the axes.
+
+    min: The lower corner, lengths.
+    max: The upper corner, lengths.
+    """
+
+    _key = 'rectangle'
+    _types = {'min': ('min', '[Value]'), 'max': ('max', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        min: Sequence[Value] | Array,
+        max: Sequence[Value] | Array,
+    ) -> None:
+        self.min = min
+        self.max = max
+
+
+class RectangleSection(Noun):
+    """A rectangle.
+
+    width: Width along the first axis of the section, a length.
+    height: Height along the second axis of the section, a length.
+    """
+
+    _key = 'rectangle'
+    _types = {'width': ('width', 'Value'), 'height': ('height', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        width: Value,
+        height: Value,
+    ) -> None:
+        self.width = width
+        self.height = height
+
+
+class Refine(Noun):
+    """Refinement of a grid in the plane: which cells are divided.
+
+    fronts: Number of divisions of the cells at all fronts; 0 if left out.
+    levels: Number of divisions of cells in which `negative_where` is negative; 1 if left out.
+    most: Maximum number of divisions where fronts curve within a cell or come close to each other; 8 if left out
+        (5 at degree 1), 0 for none.
+    negative_where: An expression of x and y. Where it is negative, cells are divided `levels` times.
+    """
+
+    _key = None
+    _types = {'fronts': ('fronts', 'int'), 'levels': ('levels', 'int'), 'most': ('most', 'int'), 'negative_where': ('negative_where', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        fronts: Optional[int] = None,
+        levels: Optional[int] = None,
+        most: Optional[int] = None,
+        negative_where: Optional[Value] = None,
+    ) -> None:
+        self.fronts = fronts
+        self.levels = levels
+        self.most = most
+        self.negative_where = negative_where
+
+
+class Revolution(Noun):
+    """A body of revolution with a smooth profile.
+
+    profile: File with points of the profile: distance from the axis and position along it. They are interpolated
+        by a spline.
+    axis: Direction of the axis, towards increasing positions.
+    origin: Origin of the positions along the axis, lengths; the origin if left out.
+    """
+
+    _key = 'revolution'
+    _types = {'profile': ('profile', 'str'), 'axis': ('axis', '[Value]'), 'origin': ('origin', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        profile: str,
+        axis: Sequence[Value] | Array,
+        origin: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.profile = profile
+        self.axis = axis
+        self.origin = origin
+
+
+class Rigid(Noun):
+    """A rigid body.
+
+    shape: The shape of its surface.
+    lies: Position relative to a membrane. If left out, it follows from the direction of a plane, cone or
+        paraboloid and from the centre of a round body; all other bodies are below.
+    motion: Motion of the body; at rest if left out.
+    side: The side of the surface on which contact is possible; `outside` if left out.
+    smooth: For triangle meshes: a smooth surface through the vertices replaces the flat triangles, for bodies
+        that slide or roll on it; false if left out. Paths always use the smooth surface.
+    """
+
+    _key = 'rigid'
+    _types = {'shape': ('shape', '<Shape>'), 'lies': ('lies', 'str'), 'motion': ('motion', '<Motion>'), 'side': ('side', 'str'), 'smooth': ('smooth', 'bool')}
+
+    def __init__(
+        self,
+        *,
+        shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        lies: Optional[str] = None,
+        motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
+        side: Optional[str] = None,
+        smooth: Optional[bool] = None,
+    ) -> None:
+        self.shape = shape
+        self.lies = lies
+        self.motion = motion
+        self.side = side
+        self.smooth = smooth
+
+
+class Rope(Noun):
+    """A rope: it carries tension only.
+
+    path: Initial position of the rope.
+    stiffness: Axial stiffness EA, a force.
+    bending_stiffness: Bending stiffness EI of a smooth rope; 0 if left out.
+    cells: Number of elements; 50 if left out.
+    contact_points: Number of Gauss points in each element of a smooth rope at which contact is tested; 4 if left
+        out.
+    continuity: Straight elements (`C0`) or smooth ones (`C1`); `C0` if left out.
+    pretension: Initial tension along the path, a force.
+    pulleys: Points of the path, lengths, at which the rope runs through a pulley without friction. The tension is
+        the same on both sides. Supports and loads name them `ROPE:pulleys`, or one by one `ROPE:pulley_1`. Only
+        for straight elements.
+    radius: Radius of the section, used in contact; 0 if left out.
+    unstrained_length: Unstrained length; replaces `pretension`. The length of the path if both are left out.
+    winch: A winch at a supported end. Only for straight elements.
+    """
+
+    _key = 'rope'
+    _types = {'path': ('path', '<Path>'), 'stiffness': ('stiffness', 'Value'), 'bending_stiffness': ('bending_stiffness', 'Value'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'continuity': ('continuity', 'str'), 'pretension': ('pretension', 'Value'), 'pulleys': ('pulleys', '[[Value]]'), 'radius': ('radius', 'Value'), 'unstrained_length': ('unstrained_length', 'Value'), 'winch': ('winch', 'Winch')}
+
+    def __init__(
+        self,
+        *,
+        path: Points | SplinePath | PathFile | ArcPath | HelixPath | FormulaPath | Sequence[Sequence[Value] | Array] | Array | Mapping[str, Any] | str,
+        stiffness: Value,
+        bending_stiffness: Optional[Value] = None,
+        cells: Optional[int] = None,
+        contact_points: Optional[int] = None,
+        continuity: Optional[str] = None,
+        pretension: Optional[Value] = None,
+        pulleys: Optional[Sequence[Sequence[Value] | Array] | Array] = None,
+        radius: Optional[Value] = None,
+        unstrained_length: Optional[Value] = None,
+        winch: Optional[Winch | Mapping[str, Any]] = None,
+    ) -> None:
+        self.path = path
+        self.stiffness = stiffness
+        self.bending_stiffness = bending_stiffness
+        self.cells = cells
+        self.contact_points = contact_points
+        self.continuity = continuity
+        self.pretension = pretension
+        self.pulleys = pulleys
+        self.radius = radius
+        self.unstrained_length = unstrained_length
+        self.winch = winch
+
+
+class RopeOnSurface(Noun):
+    """A rope on a given curve.
+
+    on: Name of the body.
+    path: The curve on the surface of the body.
+    friction: Coefficients of friction along the rope and across it, or along and across an axis of the surface.
+    end_tension: Tension at the end, a force. It is compared with the friction limits.
+    tension: Tension at the start, a force; 1 if left out.
+    """
+
+    _key = None
+    _types = {'on': ('on', 'str'), 'path': ('path', '<Path>'), 'friction': ('friction', '<PathFriction>'), 'end_tension': ('end_tension', 'Value'), 'tension': ('tension', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        path: Points | SplinePath | PathFile | ArcPath | HelixPath | FormulaPath | Sequence[Sequence[Value] | Array] | Array | Mapping[str, Any] | str,
+        friction: PathCoulomb | Mapping[str, Any] | str,
+        end_tension: Optional[Value] = None,
+        tension: Optional[Value] = None,
+    ) -> None:
+        self.on = on
+        self.path = path
+        self.friction = friction
+        self.end_tension = end_tension
+        self.tension = tension
+
+
+class SaintVenantKirchhoff(Noun):
+    """Isotropic, Saint-Venant-Kirchhoff: linear in the Green-Lagrange strain. For large rotations with small
+    strains; requires `strain = "finite"`.
+
+    youngs_modulus: Young's modulus, a force per area.
+    poissons_ratio: Poisson's ratio, above -1 and below 0.5.
+    """
+
+    _key = 'saint_venant_kirchhoff'
+    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        youngs_modulus: Value,
+        poissons_ratio: Value,
+    ) -> None:
+        self.youngs_modulus = youngs_modulus
+        self.poissons_ratio = poissons_ratio
+
+
+class SectionStiffness(Noun):
+    """The stiffness of the section.
+
+    EA: Axial stiffness, a force.
+    EI: Bending stiffness about both axes; one value for both is allowed.
+    GA: Shear stiffness along both axes, forces; large if left out: `EA` then.
+    GJ: Torsional stiffness; `EI` if left out.
+    """
+
+    _key = 'stiffness'
+    _types = {'EA': ('EA', 'Value'), 'EI': ('EI', 'Value|[Value]'), 'GA': ('GA', 'Value|[Value]'), 'GJ': ('GJ', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        EA: Value,
+        EI: Value | Sequence[Value] | Array,
+        GA: Optional[Value | Sequence[Value] | Array] = None,
+        GJ: Optional[Value] = None,
+    ) -> None:
+        self.EA = EA
+        self.EI = EI
+        self.GA = GA
+        self.GJ = GJ
+
+
+class ShortestPath(Noun):
+    """A shortest path.
+
+    from_: Start: a point in space (lengths, expressions of t) or a point of a body.
+    to: End: a point in space or a point of a body.
+    around: Bodies in the order of the path. The path is in contact with a body only where it is obstructed by it.
+        With `via`, one list for each part.
+    end_tension: Tension at the end, a force, as an expression of t. It is compared with the friction limits.
+    friction: Coefficients of friction: one for all directions, or along the path and across it.
+    tension: Tension at the start, a force, as an expression of t.
+    turns: Additional turns around bodies, by their names.
+    via: Points that the path passes through, in order.
+    """
+
+    _key = None
+    _types = {'from_': ('from', '[Value]|OnBody'), 'to': ('to', '[Value]|OnBody'), 'around': ('around', '[str|[str]]'), 'end_tension': ('end_tension', 'Value'), 'friction': ('friction', '<PathFriction>'), 'tension': ('tension', 'Value'), 'turns': ('turns', '{int}'), 'via': ('via', '[[Value]|OnBody]')}
+
+    def __init__(
+        self,
+        *,
+        from_: Sequence[Value] | Array | OnBody | Mapping[str, Any],
+        to: Sequence[Value] | Array | OnBody | Mapping[str, Any],
+        around: Optional[Sequence[str | Sequence[str] | Array] | Array] = None,
+        end_tension: Optional[Value] = None,
+        friction: Optional[PathCoulomb | Mapping[str, Any] | str] = None,
+        tension: Optional[Value] = None,
+        turns: Optional[Mapping[str, int]] = None,
+        via: Optional[Sequence[Sequence[Value] | Array | OnBody | Mapping[str, Any]] | Array] = None,
+    ) -> None:
+        self.from_ = from_
+        self.to = to
+        self.around = around
+        self.end_tension = end_tension
+        self.friction = friction
+        self.tension = tension
+        self.turns = turns
+        self.via = via
+
+
+class Solid(Noun):
+    """An elastic solid.
+
+    mesh: The mesh of the body.
+    material: The material of the body.
+    degree: Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells. If left out, the
+        order of the mesh.
+    edges: Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
+    strain: Strain measure: `small` or `finite`; `small` if left out.
+    """
+
+    _key = 'solid'
+    _types = {'mesh': ('mesh', '<SolidMesh>'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'edges': ('edges', '{SolidEdge}'), 'strain': ('strain', 'str')}
+
+    def __init__(
+        self,
+        *,
+        mesh: BoxMesh | GmshMesh | MeshArrays | Mapping[str, Any] | str,
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        degree: Optional[int] = None,
+        edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
+        strain: Optional[str] = None,
+    ) -> None:
+        self.mesh = mesh
+        self.material = material
+        self.degree = degree
+        self.edges = edges
+        self.strain = strain
+
+
+class SolidEdge(Noun):
+    """The edge along which two surfaces of a solid meet.
+
+    between: Two groups of sides, such as `["top", "left"]`.
+    radius: Radius of a rounding around the edge, which extends beyond the edge by this radius; 0 (a sharp edge)
+        if left out.
+    """
+
+    _key = None
+    _types = {'between': ('between', '[str]'), 'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        between: Sequence[str] | Array,
+        radius: Optional[Value] = None,
+    ) -> None:
+        self.between = between
+        self.radius = radius
+
+
+class Sphere(Noun):
+    """A sphere; a circle in the plane.
+
+    center: Centre, lengths.
+    radius: Radius, a length.
+    """
+
+    _key = 'sphere'
+    _types = {'center': ('center', '[Value]'), 'radius': ('radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        center: Sequence[Value] | Array,
+        radius: Value,
+    ) -> None:
+        self.center = center
+        self.radius = radius
+
+
+class SplinePath(Noun):
+    """A spline through points.
+
+    points: Points in order, lengths.
+    closed: Whether the curve is closed.
+    """
+
+    _key = 'spline'
+    _types = {'points': ('points', '[[Value]]'), 'closed': ('closed', 'bool')}
+
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[Value] | Array] | Array,
+        closed: Optional[bool] = None,
+    ) -> None:
+        self.points = points
+        self.closed = closed
+
+
+class Step(Noun):
+    """A load step.
+
+    to: Time at the end of the step.
+    control: The path parameter of the step; the time if left out.
+    events: Time tolerance to which changes of topology and jumps are located; not located if left out.
+    increments: Number of increments; 1 if left out.
+    """
+
+    _key = None
+    _types = {'to': ('to', 'Value'), 'control': ('control', '<Control>'), 'events': ('events', 'float'), 'increments': ('increments', 'int')}
+
+    def __init__(
+        self,
+        *,
+        to: Value,
+        control: Optional[Time | ArcLength | AreaControl | Mapping[str, Any] | str] = None,
+        events: Optional[float] = None,
+        increments: Optional[int] = None,
+    ) -> None:
+        self.to = to
+        self.control = control
+        self.events = events
+        self.increments = increments
+
+
+class Stl(Noun):
+    """A triangle mesh from an STL, OBJ or PLY file.
+
+    file: The file. The path is relative to the folder of the case.
+    move: Translation, applied after scaling and rotation; lengths.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    """
+
+    _key = 'stl'
+    _types = {'file': ('file', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        move: Optional[Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        turn: Optional[Value | Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.move = move
+        self.scale = scale
+        self.turn = turn
+
+
+class SubCellIntegration(Noun):
+    """With sub-cells, cut along chords.
+
+    subdivision: Number of sub-cells in each direction of a cell.
+    """
+
+    _key = 'sub_cells'
+    _types = {'subdivision': ('subdivision', 'int')}
+
+    def __init__(
+        self,
+        *,
+        subdivision: int,
+    ) -> None:
+        self.subdivision = subdivision
+
+
+class Support(Noun):
+    """A support: degrees of freedom that are fixed, prescribed or elastically supported.
+
+    on: Body or group of a body: `BODY` or `BODY:GROUP`.
+    displacement: Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free
+        components.
+    normal: Prescribed displacement along the outward normal; the tangential components are free.
+    rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
+        components.
+    spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
+    uniform: All points share one unknown displacement in the components that are not prescribed.
+    """
+
+    _key = None
+    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'uniform': ('uniform', 'bool')}
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        displacement: Optional[Value | Sequence[Value] | Array] = None,
+        normal: Optional[Value] = None,
+        rotation: Optional[Sequence[Value] | Array] = None,
+        spring: Optional[Sequence[Value] | Array] = None,
+        uniform: Optional[bool] = None,
+    ) -> None:
+        self.on = on
+        self.displacement = displacement
+        self.normal = normal
+        self.rotation = rotation
+        self.spring = spring
+        self.uniform = uniform
+
+
+class Table(Noun):
+    """A piecewise linear function.
+
+    t: Arguments in ascending order.
+    value: Function values, one for each argument.
+    """
+
+    _key = None
+    _types = {'t': ('t', '[float]'), 'value': ('value', '[float]')}
+
+    def __init__(
+        self,
+        *,
+        t: Sequence[float] | Array,
+        value: Sequence[float] | Array,
+    ) -> None:
+        self.t = t
+        self.value = value
+
+
+class Time(Noun):
+    """Time."""
+
+    _key = 'time'
+    _types = {}
+
+    def __init__(self) -> None:
+        pass
+
+
+class TimeFunction(Noun):
+    """A function of one argument: a table, or an expression in `t`.
+
+    expression: An expression in t.
+    table: Points of a piecewise linear function.
+    """
+
+    _key = None
+    _types = {'expression': ('expression', 'Value'), 'table': ('table', 'Table')}
+
+    def __init__(
+        self,
+        *,
+        expression: Optional[Value] = None,
+        table: Optional[Table | Mapping[str, Any]] = None,
+    ) -> None:
+        self.expression = expression
+        self.table = table
+
+
+class Torus(Noun):
+    """A torus.
+
+    center: Centre, lengths.
+    axis: Direction of the axis. Its length has no influence.
+    major_radius: Radius of the centre line of the ring, a length.
+    minor_radius: Radius of the cross-section, a length.
+    """
+
+    _key = 'torus'
+    _types = {'center': ('center', '[Value]'), 'axis': ('axis', '[Value]'), 'major_radius': ('major_radius', 'Value'), 'minor_radius': ('minor_radius', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        center: Sequence[Value] | Array,
+        axis: Sequence[Value] | Array,
+        major_radius: Value,
+        minor_radius: Value,
+    ) -> None:
+        self.center = center
+        self.axis = axis
+        self.major_radius = major_radius
+        self.minor_radius = minor_radius
+
+
+class TrescaFriction(Noun):
+    """Tresca friction: the limit does not depend on the pressure.
+
+    limit: Friction limit, a force per area.
+    """
+
+    _key = 'tresca'
+    _types = {'limit': ('limit', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        limit: Value,
+    ) -> None:
+        self.limit = limit
+
+
+class TriangleArrays(Noun):
+    """A closed triangulated surface.
+
+    points: Coordinates of the points, in the base unit of length.
+    triangles: The corners of each triangle, counted from zero, counterclockwise as seen from outside.
+    """
+
+    _key = 'triangles'
+    _types = {'points': ('points', '[[float]]'), 'triangles': ('triangles', '[[int]]')}
+
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[float] | Array] | Array,
+        triangles: Sequence[Sequence[int] | Array] | Array,
+    ) -> None:
+        self.points = points
+        self.triangles = triangles
+
+
+class Union(Noun):
+    """Union: the points inside at least one of the geometries."""
+
+    _key = 'union'
+    _types = {'value': ('union', '[<Composed>|<Shape>]')}
+
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+        self.value = value
+
+
+class View(Noun):
+    """View direction of pictures in space.
+
+    from_: Direction from the object to the viewer.
+    up: Direction that points up in the picture; z if left out.
+    """
+
+    _key = None
+    _types = {'from_': ('from', '[float]'), 'up': ('up', '[float]')}
+
+    def __init__(
+        self,
+        *,
+        from_: Sequence[float] | Array,
+        up: Optional[Sequence[float] | Array] = None,
+    ) -> None:
+        self.from_ = from_
+        self.up = up
+
+
+class ViscousFriction(Noun):
+    """Coulomb friction, regularised by the slip velocity. There is no stick; contact points creep.
+
+    mu: Coefficient of friction at high slip velocities.
+    velocity: Slip velocity at which 0.71 of the friction limit is reached, a length per time.
+    """
+
+    _key = 'viscous'
+    _types = {'mu': ('mu', 'Value'), 'velocity': ('velocity', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        mu: Value,
+        velocity: Value,
+    ) -> None:
+        self.mu = mu
+        self.velocity = velocity
+
+
+class Winch(Noun):
+    """A winch, which pays out rope and takes it in.
+
+    at: The end of the rope with the winch.
+    paid_out: Unstrained length paid out since the start, as an expression of `t`; negative if rope is taken in.
+    """
+
+    _key = None
+    _types = {'at': ('at', 'str'), 'paid_out': ('paid_out', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        at: str,
+        paid_out: Value,
+    ) -> None:
+        self.at = at
+        self.paid_out = paid_out
+
+
+class Winding(Noun):
+    """A path of a yarn on a mandrel.
+
+    on: Name of the mandrel.
+    start: Start point and start direction.
+    axis: Rotation axis of the mandrel, through the centre of its shape; z if left out.
+    band: Width of the band, a length.
+    friction: Coefficient of friction. The yarn slips beyond it.
+    length: Length of a path without opening or pattern; with these, the maximum length to a turn.
+    pattern: Winding pattern of circuits that covers the mandrel.
+    polar_opening: Polar opening that the path has to reach.
+    slippage: Slippage, the ratio of geodesic to normal curvature, as an expression of s, angle, r and z. If left
+        out and `polar_opening` is given, it is computed.
+    spacing: Distance between the points that are written, a length.
+    """
+
+    _key = None
+    _types = {'on': ('on', 'str'), 'start': ('start', 'WindingStart'), 'axis': ('axis', '[Value]'), 'band': ('band', 'Value'), 'friction': ('friction', 'Value'), 'length': ('length', 'Value'), 'pattern': ('pattern', 'WindingPattern'), 'polar_opening': ('polar_opening', 'PolarOpening'), 'slippage': ('slippage', 'Value'), 'spacing': ('spacing', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        start: WindingStart | Mapping[str, Any],
+        axis: Optional[Sequence[Value] | Array] = None,
+        band: Optional[Value] = None,
+        friction: Optional[Value] = None,
+        length: Optional[Value] = None,
+        pattern: Optional[WindingPattern | Mapping[str, Any]] = None,
+        polar_opening: Optional[PolarOpening | Mapping[str, Any]] = None,
+        slippage: Optional[Value] = None,
+        spacing: Optional[Value] = None,
+    ) -> None:
+        self.on = on
+        self.start = start
+        self.axis = axis
+        self.band = band
+        self.friction = friction
+        self.length = length
+        self.pattern = pattern
+        self.polar_opening = polar_opening
+        self.slippage = slippage
+        self.spacing = spacing
+
+
+class WindingPattern(Noun):
+    """A table of keys.
+
+    circuits: Number of circuits, or "auto" for the smallest number that covers the mandrel.
+    """
+
+    _key = None
+    _types = {'circuits': ('circuits', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        circuits: Value,
+    ) -> None:
+        self.circuits = circuits
+
+
+class WindingStart(Noun):
+    """A table of keys.
+
+    z: Position along the axis, a length.
+    angle: Angle to the meridian, in radians or as "25 deg".
+    theta: Angle around the axis, in radians or as "25 deg"; 0 if left out.
+    """
+
+    _key = None
+    _types = {'z': ('z', 'Value'), 'angle': ('angle', 'Value'), 'theta': ('theta', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        z: Value,
+        angle: Value,
+        theta: Optional[Value] = None,
+    ) -> None:
+        self.z = z
+        self.angle = angle
+        self.theta = theta
+
+
+class ProblemKeys(Noun):
+    """A problem.
+
+    bodies: Bodies, by names of your own.
+    analysis: Kind of analysis; `equilibrium` if left out.
+    constants: Named numbers for use in expressions.
+    contacts: Contacts between bodies, by names of your own.
+    fit: Parameters that `signorini fit` computes from measurements.
+    frames: With `analysis = "wrapping"`: number of times in [0, 1]; 2 if left out.
+    functions: Named functions of one argument, `t`, for use in expressions.
+    limits: Limits of the computation.
+    loads: Loads, by names of your own.
+    output: What is written to disk.
+    paths: With `analysis = "wrapping"`: shortest paths, by names of your own.
+    ropes: With `analysis = "euler_eytelwein"`: ropes on given curves, by names of your own.
+    space: Dimension and meaning of the coordinates; `3d` if left out.
+    stability: Treatment of unstable states of a system; `follow` if left out.
+    steps: Load steps. Without steps one state is computed at t = 0.
+    supports: Supports and prescribed displacements, by names of your own.
+    title: Free text, copied to the results.
+    units: Base units. If left out, numbers are in any consistent units.
+    view: View direction of pictures of paths.
+    winding: With `analysis = "winding"`: paths of yarns, by names of your own.
+    """
+
+    _key = None
+    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
+
+    def __init__(
+        self,
+        *,
+        bodies: Mapping[str, Membrane | Rigid | Solid | Cells | Rope | Beam | Mapping[str, Any] | str],
+        analysis: Optional[str] = None,
+        constants: Optional[Mapping[str, Value]] = None,
+        contacts: Optional[Mapping[str, Contact | Mapping[str, Any]]] = None,
+        fit: Optional[Fit | Mapping[str, Any]] = None,
+        frames: Optional[int] = None,
+        functions: Optional[Mapping[str, TimeFunction | Mapping[str, Any]]] = None,
+        limits: Optional[Limits | Mapping[str, Any]] = None,
+        loads: Optional[Mapping[str, Load | Mapping[str, Any]]] = None,
+        output: Optional[Output | Mapping[str, Any]] = None,
+        paths: Optional[Mapping[str, ShortestPath | Mapping[str, Any]]] = None,
+        ropes: Optional[Mapping[str, RopeOnSurface | Mapping[str, Any]]] = None,
+        space: Optional[str] = None,
+        stability: Optional[str] = None,
+        steps: Optional[Sequence[Step | Mapping[str, Any]] | Array] = None,
+        supports: Optional[Mapping[str, Support | Mapping[str, Any]]] = None,
+        title: Optional[str] = None,
+        units: Optional[str | BaseUnits | Mapping[str, Any]] = None,
+        view: Optional[View | Mapping[str, Any]] = None,
+        winding: Optional[Mapping[str, Winding | Mapping[str, Any]]] = None,
+    ) -> None:
+        self.bodies = bodies
+        self.analysis = analysis
+        self.constants = constants
+        self.contacts = contacts
+        self.fit = fit
+        self.frames = frames
+        self.functions = functions
+        self.limits = limits
+        self.loads = loads
+        self.output = output
+        self.paths = paths
+        self.ropes = ropes
+        self.space = space
+        self.stability = stability
+        self.steps = steps
+        self.supports = supports
+        self.title = title
+        self.units = units
+        self.view = view
+        self.winding = winding
+
+
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]

@@ -1,0 +1,78 @@
+"""The classes are generated from the schema; cases go in and out."""
+
+import doctest
+import importlib
+import json
+import pathlib
+import pkgutil
+import sys
+
+import pytest
+import signorini as sg
+from signorini import _native, _nouns
+
+HERE = pathlib.Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))
+
+
+def test_the_nouns_are_those_of_the_schema():
+    from generate import generated
+
+    installed = pathlib.Path(_nouns.__file__).read_text(encoding="utf-8")
+    assert generated(json.loads(_native.schema())) == installed, "run  python generate.py --installed"
+
+
+def test_every_noun_has_a_docstring_and_knows_its_keys():
+    for name in _nouns.__all__:
+        noun = getattr(sg, name)
+        assert noun.__doc__ and getattr(_nouns, name) is noun
+        assert set(noun._types) == set(noun.__init__.__annotations__) - {"return"}
+
+
+@pytest.mark.parametrize("name", [name for name in sg.gallery() if name != "swords"])
+def test_every_case_of_the_gallery_goes_in_and_out(name):
+    problem = sg.gallery(name)
+    again = sg.Problem.from_toml(problem.to_toml())
+    assert again == problem and again.to_toml() == problem.to_toml()
+    assert eval(repr(problem), vars(sg)) == problem  # noqa: S307
+
+
+def test_arrays_in_place_of_files_are_written_beside_the_case(tmp_path):
+    import problems
+
+    problem = problems.image()
+    with pytest.raises(sg.CaseError, match="folder"):
+        problem.to_toml()
+    problem.to_toml(tmp_path / "case.toml")
+    again = sg.run(tmp_path / "case.toml", pictures=False)
+    assert (again.contacts.touch.force == sg.run(problem, pictures=False).contacts.touch.force).all()
+
+
+def test_settings_replace_keys():
+    text = sg.gallery("flat_disc").to_toml()
+    problem = sg.Problem.from_toml(text, set=["loads.press.normal=-0.5"])
+    assert problem.loads["press"].normal == -0.5
+
+
+def test_a_copy_has_other_keys():
+    load = sg.Load(on="film", normal=1)
+    assert load.replace(normal=2) == sg.Load(on="film", normal=2) and load.normal == 1
+    assert load != sg.Load(on="film") and load != 1
+    with pytest.raises(AttributeError):
+        load.replace(norm=1)
+
+
+@pytest.mark.parametrize("name", ["", *(m.name for m in pkgutil.iter_modules(sg.__path__) if m.name != "_native")])
+def test_the_examples_of_the_docstrings_hold(name):
+    module = importlib.import_module(f"signorini.{name}".rstrip("."))
+    assert doctest.testmod(module, optionflags=doctest.NORMALIZE_WHITESPACE).failed == 0
+
+
+def test_the_example_of_the_manual_holds(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (HERE.parent / "README.md").read_text(encoding="utf-8")
+    code = text.split("```python\n")[1].split("```")[0]
+    names: dict = {}
+    exec(code, names)  # noqa: S102
+    assert names["result"].contacts["touch"].area == pytest.approx(0.7931908, rel=1e-5)
+    assert (tmp_path / "film.png").is_file()

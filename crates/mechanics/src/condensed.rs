@@ -76,7 +76,7 @@ impl System {
     /// where they are.
     pub(crate) fn dissected(&self) -> Option<Symbolic> {
         let (_, count) = self.numbering();
-        if count < MANY {
+        if count < MANY || self.solver != LinearSolver::Automatic {
             return None;
         }
         let places: Vec<[f64; 3]> = self.bodies.iter().flat_map(|body| body.places()).collect();

@@ -10,7 +10,7 @@
 //! - [`contact`]: law and enforcement at the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
-//! - [`condensed`]: Newton's step with linear bodies factorised once.
+//! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
 //! - [`stability`]: whether a state is stable, on what may move (`admissible`); `branch`: from an unstable state to a stable one.

@@ -31,13 +31,15 @@ impl Facing {
         let is_whole = |(part, body): (&Part, &dyn Body)| part.group.is_none() && body.is_linear();
         let states = [slave.1.start(), master.1.start()];
         let other = master.1.master(master.0.group.as_deref(), &states[1])?;
-        let looks = looking(surface, other.as_ref());
+        let size = slave.1.size().min(if master.1.is_rigid() { f64::INFINITY } else { master.1.size() });
+        let looks = looking(surface, (other.as_ref(), size));
         let mut out = Facing { is_away: looks.is_none(), ..Facing::default() };
         if is_whole(slave) {
             out.slave = looks;
         }
         if let Some(faces) = master.1.surface(master.0.group.as_deref(), &states[1]).filter(|_| is_whole(master)) {
-            out.master = looking(faces.as_ref(), slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref());
+            out.master =
+                looking(faces.as_ref(), (slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref(), size));
         }
         Ok(out)
     }
@@ -51,12 +53,15 @@ impl Facing {
     }
 }
 
+/// What lies deeper inside, relative to the size of the smaller body, is no interference, but seen from behind.
+const INTERFERENCE: f64 = 0.25;
+
 /// Which faces look at the other side; none told where none does.
-fn looking(surface: &dyn Surface, other: &dyn Master) -> Option<Vec<bool>> {
+fn looking(surface: &dyn Surface, (other, size): (&dyn Master, f64)) -> Option<Vec<bool>> {
     other.prepare();
     let looks = |(x, normal): &(Point<3>, Vector<3>)| {
         let gap = other.nearest(x, f64::INFINITY, None).and_then(|met| met.gap(x));
-        gap.is_some_and(|(_, outward)| looks_at(normal, &outward))
+        gap.is_some_and(|(gap, outward)| gap > -INTERFERENCE * size && looks_at(normal, &outward))
     };
     let list: Vec<bool> = centres(surface).par_iter().map(looks).collect();
     list.contains(&true).then_some(list)

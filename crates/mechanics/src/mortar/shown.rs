@@ -126,9 +126,12 @@ fn show_on<const D: usize>(
         carrying.iter().for_each(|k| area[counts_at[*k]] += whole / carrying.len() as f64);
     }
     let zones = connected(nodes, &active);
-    for (((result, pressure), area), zone) in results.iter_mut().zip(pressure).zip(area).zip(zones) {
-        result.of_surface = zone.filter(|_| is_active(result)).map(|zone| {
-            let gain = law.map_or(1.0, |law| law.gain(pressure, result.pressure));
+    // A node without a function of its own has a pressure too, as that on an axis, which may be the largest.
+    for ((((result, pressure), area), zone), active) in
+        results.iter_mut().zip(pressure).zip(area).zip(zones).zip(active)
+    {
+        result.of_surface = zone.filter(|_| active).map(|zone| {
+            let gain = law.filter(|_| is_active(result)).map_or(1.0, |law| law.gain(pressure, result.pressure));
             OfSurface { pressure, friction: result.friction * gain, area, zone }
         });
     }

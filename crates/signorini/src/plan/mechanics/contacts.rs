@@ -382,6 +382,10 @@ impl Planner<'_> {
 
     /// What carries the axis of friction.
     pub(super) fn axis_choice(&self, key: &problem::CoulombFriction) -> Result<AxisChoice, CaseError> {
+        if key.axis.is_none() && key.mu.0.len() == 2 && self.space != problem::Space::ThreeD {
+            let message = "in the plane slip has one direction, so there is one coefficient";
+            return Err(self.problem.error(&key.mu, message).help("mu = 0.3"));
+        }
         let Some(axis) = &key.axis else {
             return Ok(if key.mu.0.len() == 2 { AxisChoice::Tangent } else { AxisChoice::Material });
         };

@@ -34,13 +34,19 @@ impl Progress for Quiet<'_> {
     }
 }
 
-/// The same bodies with finer functions, and by how many times these are more along a line: of one degree more, or where there
-/// are none, as on triangles of degree 2, with cells of half the size. None with bodies whose functions have no degree, ropes and
-/// beams, or where all bodies are rigid.
-fn finer(problem: &Problem) -> Option<(Box<MechanicsPlan>, f64)> {
+/// A problem with finer functions, and by how many times these are more along a line.
+struct Finer {
+    /// With functions of one degree more, and the growth; none where a degree is known to a mesh only.
+    raised: Option<(Problem, f64)>,
+    /// Whether cells may be halved instead, as where there are no functions of a higher degree.
+    halves: bool,
+}
+
+/// None with bodies whose functions have no degree, ropes and beams, or where all bodies are rigid.
+fn finer(problem: &Problem) -> Option<Finer> {
     let mut raised = problem.clone();
     let mut least = None::<i64>;
-    let (mut is_known, mut halves) = (true, true);
+    let (mut is_known, mut halves, mut deforms) = (true, true, false);
     for body in raised.bodies.values_mut() {
         let (degree, usual) = match body {
             Body::Solid(solid) => {
@@ -54,7 +60,7 @@ fn finer(problem: &Problem) -> Option<(Box<MechanicsPlan>, f64)> {
             Body::Rigid(_) => continue,
             _ => return None,
         };
-        // Of a mesh of curved cells the degree is known to the mesh only.
+        deforms = true;
         let Some(own) = degree.or(usual) else {
             is_known = false;
             continue;
@@ -62,12 +68,28 @@ fn finer(problem: &Problem) -> Option<(Box<MechanicsPlan>, f64)> {
         *degree = Some(own + 1);
         least = Some(least.map_or(own, |l| l.min(own)));
     }
-    if let (true, Ok(Plan::Mechanics(plan))) = (is_known, crate::plan::plan(&raised)) {
-        return Some((plan, 1.0 + 1.0 / least? as f64));
-    }
-    match crate::plan::halved(problem) {
-        Ok(Plan::Mechanics(plan)) if halves => Some((plan, 2.0)),
-        _ => None,
+    let raised = least.filter(|_| is_known).map(|degree| (raised, 1.0 + 1.0 / degree as f64));
+    deforms.then_some(Finer { raised, halves })
+}
+
+impl Finer {
+    /// The plan that is finer, if it grows by no more than so many times along a line.
+    fn plan(&self, problem: &Problem, most: f64) -> Option<Box<MechanicsPlan>> {
+        if let Some((raised, growth)) = &self.raised {
+            if *growth > most {
+                return None;
+            }
+            if let Ok(Plan::Mechanics(plan)) = crate::plan::plan(raised) {
+                return Some(plan);
+            }
+        }
+        if !self.halves || most < 2.0 {
+            return None;
+        }
+        match crate::plan::halved(problem) {
+            Ok(Plan::Mechanics(plan)) => Some(plan),
+            _ => None,
+        }
     }
 }
 
@@ -89,10 +111,9 @@ pub fn estimate(
     if plan.system.contacts.is_empty() || work > affordable {
         return;
     }
-    let Some((finer, growth)) = finer(&plan.head.problem) else { return };
-    if growth.powi(if in_space { 3 } else { 2 }) * work > affordable {
-        return;
-    }
+    let most = (affordable / work).powf(if in_space { 1.0 / 3.0 } else { 0.5 });
+    let finer = finer(&plan.head.problem).and_then(|finer| finer.plan(&plan.head.problem, most));
+    let Some(finer) = finer else { return };
     let taken: usize = record.iter().chain([&*step]).map(|s| s.iterations).sum();
     let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
     let Some(fine) = last_step(MechanicsModel::new(*finer), &mut quiet) else { return };

@@ -276,7 +276,7 @@ fn contact_report(
         components,
         max_penetration: sites.iter().filter_map(|s| s.gap).map(|g| -g).fold(0.0, f64::max),
         min_gap_outside: sites.iter().filter(|s| s.status == Status::Open).filter_map(|s| s.gap).reduce(f64::min),
-        max_pressure: closed().map(|s| s.shown_pressure()).fold(0.0, f64::max),
+        max_pressure: sites.iter().map(|s| s.shown_pressure()).fold(0.0, f64::max),
         min_pressure: closed().map(|s| s.shown_pressure()).reduce(f64::min),
         stick_area: rubs.then(|| area(Status::Stick)),
         slip_area: rubs.then(|| area(Status::Slip)),
@@ -328,16 +328,25 @@ fn most_strained<'a>(plan: &MechanicsPlan, shown: &'a SystemShown) -> Option<(&'
 
 /// Share of the contact that closes in one increment from which the way of its slip is not known well.
 const CLOSES_AT_ONCE: f64 = 0.5;
+/// Gap relative to the size of all bodies at which sides that lie on each other touch but for rounding.
+const LIES_ON: f64 = 1e-9;
 
-/// Warns of contacts with friction that closed all at once: before it closed nothing is known of slip.
+/// Warns of contacts with friction of which much was apart before: until it closed nothing is known of slip.
 fn warn_of_closing(plan: &MechanicsPlan, [before, now]: [&IncrementResult; 2], time: f64, record: &mut Record) {
+    let near = LIES_ON * plan.system.size();
     for (k, (contact, sites)) in plan.system.contacts.iter().zip(&now.sites).enumerate() {
-        let was_open = |i: usize| before.sites.get(k).and_then(|s| s.get(i)).is_none_or(|s| s.status == Status::Open);
-        let area = |list: &mut dyn Iterator<Item = &SiteResult>| list.map(SiteResult::contact_area).sum::<f64>();
         let of_surface = plan.contacts[k].carries == Carried::Pressure && !plan.contacts[k].along_a_curve;
+        if contact.law().is_none() || !of_surface {
+            continue;
+        }
+        let start = || plan.system.sites(k, &plan.system.start()).unwrap_or_default();
+        let earlier = before.sites.get(k).cloned().unwrap_or_else(start);
+        let was_apart =
+            |i: usize| earlier.get(i).is_none_or(|s| s.status == Status::Open && s.gap.is_none_or(|gap| gap > near));
+        let area = |list: &mut dyn Iterator<Item = &SiteResult>| list.map(SiteResult::contact_area).sum::<f64>();
         let whole = area(&mut sites.iter());
-        let new = area(&mut sites.iter().enumerate().filter(|(i, _)| was_open(*i)).map(|s| s.1));
-        if contact.law().is_none() || !of_surface || new <= CLOSES_AT_ONCE * whole {
+        let new = area(&mut sites.iter().enumerate().filter(|(i, _)| was_apart(*i)).map(|s| s.1));
+        if new <= CLOSES_AT_ONCE * whole {
             continue;
         }
         let message = format!(

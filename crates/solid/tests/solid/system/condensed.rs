@@ -90,3 +90,35 @@ fn a_zone_that_wanders_over_more_unknowns_than_remain() {
         system
     });
 }
+
+/// Two rubber blocks of so many unknowns that multipliers are eliminated: the state is that of a factorisation of the whole
+/// tangent, in the same iterations, without friction and with it.
+#[test]
+fn eliminated_multipliers_give_the_same_state() {
+    let law = StressLaw::NeoHooke(signorini_solid::Volumetric::default());
+    let solve = |mu: Option<f64>, solver: LinearSolver| {
+        let mut system = System { solver, ..System::default() };
+        for (name, low, high, cells) in [
+            ("lower", [0.0, 0.0, 0.0], [10.0, 10.0, 2.0], [24, 24, 5]),
+            ("upper", [4.1, 4.2, 2.0], [6.1, 5.9, 3.0], [4, 4, 2]),
+        ] {
+            system.bodies.push(Box::new(solid(name, cuboid(low, high, cells, |x| x), 1, ELASTIC, law)));
+        }
+        let zero = Some(0.0);
+        system.supports.push(hold(0, "bottom", [zero; 3]));
+        system.supports.push(hold(1, "top", [Some(0.02), zero, Some(-0.05)]));
+        touch(&mut system, [(1, "bottom"), (0, "top")], Test::Mortar(0), Enforcement::Multiplier, mu);
+        let (state, results) = run(&mut system, &[1.0]);
+        (state, results[0].clone())
+    };
+    for mu in [None, Some(0.3)] {
+        let [(a, by_krylov), (b, direct)] = [LinearSolver::Automatic, LinearSolver::Direct].map(|s| solve(mu, s));
+        assert_eq!((by_krylov.solved, direct.solved), (Solved::Eliminated, Solved::Direct), "{mu:?}");
+        assert_eq!(by_krylov.iterations, direct.iterations, "{mu:?}");
+        for (a, b) in a.bodies.iter().zip(&b.bodies) {
+            let most = b.configuration.iter().fold(0.0f64, |m, u| m.max(u.abs()));
+            let off = a.configuration.iter().zip(&b.configuration).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+            assert!(off < 1e-9 * most, "{mu:?}: {off:e}");
+        }
+    }
+}

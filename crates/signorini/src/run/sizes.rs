@@ -52,14 +52,14 @@ fn of_system(plan: &MechanicsPlan) -> Value {
 
 /// Bodies that nothing but contact holds.
 fn free(plan: &MechanicsPlan) -> Vec<String> {
-    let free = |(k, body): (usize, &Box<dyn Body>)| {
+    let free = |(k, body): (usize, &dyn Body)| {
         if !body.is_linear() || body.unknowns() == 0 {
             return None;
         }
         let motion = plan.system.free_motion(k).ok().flatten()?;
         Some(format!("`{}` is free {motion} until it is in contact", body.name()))
     };
-    plan.system.bodies.iter().enumerate().filter_map(free).collect()
+    plan.system.bodies.iter().map(AsRef::as_ref).enumerate().filter_map(free).collect()
 }
 
 /// Points of the contacts of a system at the start; null where they are found only as bodies come near.

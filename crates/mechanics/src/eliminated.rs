@@ -13,6 +13,7 @@
 //! by what is not symmetric: gaps that are not closed, and friction. The method of generalised conjugate residuals removes that
 //! in a few iterations (as augmented Lagrangians do; Fortin & Glowinski 1983; Benzi, Golub & Liesen, *Acta Numerica* 14, 2005).
 
+use signorini_contact::compress;
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::general::{Entries, Matrix};
 use signorini_solve::krylov::conjugate_residuals;
@@ -84,7 +85,7 @@ pub(crate) fn eliminated_step(
 impl Multiplier {
     /// Sums entries of the same unknown, and takes a spring where force and row are alike.
     fn choose_spring(&mut self, diagonal: &[f64]) {
-        [&mut self.force, &mut self.row].into_iter().for_each(merge);
+        [&mut self.force, &mut self.row].into_iter().for_each(compress);
         let product: f64 = {
             let mut row = self.row.iter().peekable();
             let of = |f: &(u32, f64)| {
@@ -100,18 +101,6 @@ impl Multiplier {
             self.spring = STIFFER * stiffest / force;
         }
     }
-}
-
-/// Sums entries of the same unknown.
-fn merge(list: &mut Vec<(u32, f64)>) {
-    list.sort_by_key(|e| e.0);
-    list.dedup_by(|e, kept| {
-        let same = e.0 == kept.0;
-        if same {
-            kept.1 += e.1;
-        }
-        same
-    });
 }
 
 /// The equations, and what preconditions them.

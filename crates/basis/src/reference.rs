@@ -71,6 +71,17 @@ impl CellShape {
         }
     }
 
+    /// The function that is one at a vertex of a face and zero at the others, linear along straight edges.
+    pub fn vertex_function(self, vertex: usize, s: &Local) -> f64 {
+        let corner = &self.vertices()[vertex];
+        match self {
+            Triangle if vertex == 0 => 1.0 - s[0] - s[1],
+            Triangle => corner[0] * s[0] + corner[1] * s[1],
+            Line => 0.5 * (1.0 + corner[0] * s[0]),
+            _ => 0.25 * (1.0 + corner[0] * s[0]) * (1.0 + corner[1] * s[1]),
+        }
+    }
+
     /// Pairs of vertices; edges of tensor shapes run along their positive axis.
     pub fn edges(self) -> &'static [[usize; 2]] {
         match self {

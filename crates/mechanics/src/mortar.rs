@@ -17,15 +17,17 @@
 //! The tangent is exact but for the ends of the covered part: where the cuts within it move, the integrand does not jump.
 //! A rigid master is tested at the points of a rule on whole slave faces.
 
+mod across;
 mod axes;
 mod cover;
 mod facing;
-mod force;
 mod interaction;
 mod measure;
+mod rigid;
 mod saved;
 mod shown;
 mod small;
+mod terms;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::enforcement::Enforcement;

@@ -53,7 +53,7 @@ impl ShownSurface {
 
     /// With the zone of contact, where the surface is now.
     pub(crate) fn with_zone(mut self, zone: &ContactZone, surface: &dyn Surface) -> Self {
-        let moved = |(face, ends): &(usize, [Local; 2])| ends.map(|s| surface.placed(*face, &s, false).x);
+        let moved = |(face, ends): &(usize, [Local; 2])| ends.map(|s| surface.point(*face, &s).x);
         self.boundary = zone.boundary.iter().map(moved).collect();
         self.boundary_face = zone.boundary.iter().map(|b| b.0).collect();
         self.intervals = zone.intervals.iter().map(moved).collect();

@@ -1,8 +1,8 @@
 //! What a surface of faces is to contact by mortar: faces with functions, where they are in a state.
 
-use crate::points::{Foot, Placed};
-use signorini_contact::ContactSurface;
-use signorini_geometry::Vector;
+use crate::points::{Direction, Placed};
+use signorini_contact::{ContactSurface, ShapeFunction};
+use signorini_geometry::{Point, Vector};
 
 /// Coordinates on a face.
 pub type Local = [f64; 3];
@@ -14,22 +14,74 @@ pub enum Faces<'a> {
     Space(&'a dyn ContactSurface<3>),
 }
 
+/// A point of a face where it is now.
+pub(crate) struct SurfacePoint {
+    pub x: Point<3>,
+    /// Derivatives of `x` along the coordinates; in the plane the second points across it.
+    pub tangents: [Vector<3>; 2],
+    /// What moves it: each function along as many axes as the body has.
+    pub functions: Vec<ShapeFunction>,
+}
+
 /// A surface of faces in a state. Faces have the numbers of [`Faces`].
 pub trait Surface: Sync {
     /// The faces at rest, and the displacements of their unknowns.
     fn faces(&self) -> (Faces<'_>, &[f64]);
 
-    /// Outward normal averaged over the faces that meet, of any length: a direction that changes without jumps from face to
-    /// face.
-    fn normal(&self, face: usize, s: &Local) -> Vector<3>;
+    /// The averaged outward normal at each vertex of a face, of any length. Between them it changes like the functions of the
+    /// vertices: without jumps from face to face.
+    fn corners(&self, face: usize) -> &[Direction];
 
-    /// A point as one that is tested, with the averaged normal and what moves both; second derivatives of the normal only where
-    /// they are asked for.
-    fn placed(&self, face: usize, s: &Local, bends: bool) -> Placed;
-
-    /// A point as one that is met: position and tangents, with what moves them.
-    fn met(&self, face: usize, s: &Local) -> Foot;
+    /// A point as one that is tested.
+    fn placed(&self, face: usize, s: &Local) -> Placed;
 
     /// The force per area that moves a face by a unit of length, about: the scale of penalties.
     fn stiffness(&self, face: usize) -> f64;
+}
+
+impl dyn Surface + '_ {
+    /// Axes along which unknowns move a point.
+    pub(crate) fn dimension(&self) -> usize {
+        match self.faces().0 {
+            Faces::Plane(_) => 2,
+            Faces::Space(_) => 3,
+        }
+    }
+
+    /// The share of each vertex in the averaged normal at a point.
+    pub(crate) fn vertex_functions(&self, face: usize, s: &Local) -> Vec<f64> {
+        let shape = match self.faces().0 {
+            Faces::Plane(faces) => faces.shape(face),
+            Faces::Space(faces) => faces.shape(face),
+        };
+        (0..shape.vertices().len()).map(|k| shape.vertex_function(k, s)).collect()
+    }
+
+    /// The averaged normal at a point, of any length.
+    pub(crate) fn normal(&self, face: usize, s: &Local) -> Vector<3> {
+        self.corners(face).iter().zip(self.vertex_functions(face, s)).map(|(corner, share)| corner.vector * share).sum()
+    }
+
+    pub(crate) fn point(&self, face: usize, s: &Local) -> SurfacePoint {
+        match self.faces() {
+            (Faces::Plane(faces), u) => point(faces, u, face, s),
+            (Faces::Space(faces), u) => point(faces, u, face, s),
+        }
+    }
+}
+
+fn point<const D: usize>(faces: &dyn ContactSurface<D>, u: &[f64], face: usize, s: &Local) -> SurfacePoint {
+    let spatial = |x: &Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
+    let functions = faces.functions(face, s);
+    let mut at = faces.at(face, s);
+    for f in &functions {
+        let u = Point::<D>::from_fn(|i, _| u[f.unknown as usize + i]);
+        at.x += u * f.value;
+        (0..D - 1).for_each(|a| at.tangents[a] += u * f.slopes[a]);
+    }
+    let mut tangents = at.tangents.each_ref().map(spatial);
+    if D == 2 {
+        tangents[1] = Vector::<3>::z();
+    }
+    SurfacePoint { x: spatial(&at.x), tangents, functions }
 }

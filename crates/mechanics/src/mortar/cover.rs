@@ -11,7 +11,7 @@ use signorini_contact::{
     ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, segments, shares,
     shares_on_the_way,
 };
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
 
 /// The nodes of the pressure, with normals of the averaged field.
 pub(super) enum Nodes {
@@ -19,13 +19,23 @@ pub(super) enum Nodes {
     Space(PressureNodes<3>),
 }
 
+/// A point of a face of the master that a point of the slave sees along its averaged normal.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    pub face: usize,
+    pub s: Local,
+    pub gap: f64,
+    /// Unit vector from there to the slave.
+    pub normal: Vector<3>,
+}
+
 /// A point of the slave side.
 #[derive(Clone, Debug)]
 pub(super) struct CoveredPoint {
     pub face: usize,
     pub s: Local,
-    /// Face and point of the master; none of a rigid one.
-    pub master: Option<(usize, Local)>,
+    /// What it sees of another surface; none of a rigid master.
+    pub master: Option<Seen>,
     /// Nodes, and the dual function of each times the reference area of the point.
     pub shares: Vec<(u32, f64)>,
 }
@@ -173,12 +183,11 @@ fn cover<const D: usize>(
     let shares = found(slave, nodes, &points, &|k| folded[k as usize]);
     let of_face = |(face, (list, shares)): (usize, (Vec<GapPoint<D>>, Vec<Vec<(u32, f64)>>))| {
         let list = list.into_iter().zip(shares);
-        let of = |(p, shares): (GapPoint<D>, Vec<(u32, f64)>)| CoveredPoint {
-            face,
-            s: p.s,
-            master: p.master.map(|(other, at)| (other as usize, at)),
-            shares,
+        let seen = |p: &GapPoint<D>| {
+            let normal = Vector::<3>::from_fn(|k, _| if k < D { p.direction[k] } else { 0.0 });
+            p.master.map(|(other, s)| Seen { face: other as usize, s, gap: p.gap, normal })
         };
+        let of = |(p, shares): (GapPoint<D>, Vec<(u32, f64)>)| CoveredPoint { face, s: p.s, master: seen(&p), shares };
         list.map(of).collect()
     };
     let points = points.into_iter().zip(shares.of_point).enumerate().map(of_face).collect();

@@ -1,35 +1,41 @@
 //! Mortar contact as the system sees it.
 
-use super::force::Assembly;
-use super::measure::{Matched, NodeMeasure, Opposite, Sides};
+use super::cover::CoveredPoint;
+use super::measure::{Facing, Matched, Measured, MetPoint, NodeMeasure, Opposite, Sides};
+use super::rigid;
 use super::shown::{shared_of, show, zone_of};
-use super::small::{Measured, SmallSliding};
+use super::small::{AtRest, SmallSliding};
+use super::terms::{Assembly, Carried, FaceTerms};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
 use crate::inside::Inside;
 use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
-use crate::pair::{AxisChoice, Pair, any_tangent};
+use crate::pair::{AxisChoice, any_tangent};
 use crate::part::Part;
 use crate::passage::{Tested, share_of_way};
 use crate::points::{MaterialPoint, Placed};
 use crate::shown_surface::ShownSurface;
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
+use rayon::prelude::*;
 use signorini_contact::law::Projected;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
+use std::sync::Arc;
 
 /// A contact measured in a state.
 struct Found<'a> {
     sides: Sides<'a>,
-    cover: super::cover::Cover,
-    pairs: Vec<Vec<Option<Pair>>>,
-    separations: Vec<Option<super::measure::Separation>>,
+    measured: Arc<Measured>,
+    /// Rows and columns that do not change, of small sliding.
+    linear: Option<Arc<AtRest>>,
     measures: Vec<NodeMeasure>,
     projected: Vec<Projected>,
-    lost: usize,
 }
+
+/// Faces whose terms are held at a time, made side by side.
+const AT_ONCE: usize = 256;
 
 /// Gap beyond the least one, relative to the size of the body, of what touches at the same time.
 const NEAREST: f64 = 1e-9;
@@ -37,11 +43,21 @@ const NEAREST: f64 = 1e-9;
 impl Mortar {
     fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64]) -> Result<Found<'a>, PlaceError> {
         let sides = Sides::new(self, at)?;
-        let Measured { cover, pairs, separations, lost } = self.measured(&sides, at)?;
-        let measures = self.measures(&cover, &pairs, &separations);
+        let (linear, measured, measures) = match &self.small {
+            Some(small) => {
+                let (at_rest, measures) = small.found(self, at)?;
+                let measured = Arc::clone(&at_rest.measured);
+                (Some(at_rest), measured, measures)
+            }
+            None => {
+                let measured = Arc::new(sides.measured(self));
+                let measures = self.measures(&measured);
+                (None, measured, measures)
+            }
+        };
         let of = |(k, measure)| self.traction(k, measure, self.multiplier(k, multipliers));
         let projected = measures.iter().enumerate().map(of).collect();
-        Ok(Found { sides, cover, pairs, separations, measures, projected, lost })
+        Ok(Found { sides, measured, linear, measures, projected })
     }
 
     /// The nodes that see the master, with their measures.
@@ -54,18 +70,17 @@ impl Mortar {
         let (body, state) = at.side(&self.slave);
         let surface = body.surface(self.slave.group.as_deref(), state);
         let surface = surface.ok_or_else(|| super::no_surface(body, &self.slave))?;
-        Ok(self.places.iter().map(|(face, s)| surface.placed(*face, s, false)).collect())
+        Ok(self.places.iter().map(|(face, s)| surface.placed(*face, s)).collect())
     }
 
     /// The nodes as they are found.
     fn node_results(&self, found: &Found<'_>) -> Vec<SiteResult> {
         // The force of friction of each node, with the axes of its points.
         let mut rubbed = vec![Vector::<3>::zeros(); self.whole.len()];
-        for (point, pair) in found.cover.points.iter().flatten().zip(found.pairs.iter().flatten()) {
-            let Some(pair) = pair else { continue };
+        for (point, met) in found.measured.points() {
             for (node, share) in &point.shares {
                 let [_, t1, t2] = found.projected[*node as usize].traction;
-                if let Some(axes) = self.axes(*node, &pair.normal).filter(|_| self.friction.is_some()) {
+                if let Some(axes) = self.axes(*node, &met.normal).filter(|_| self.friction.is_some()) {
                     rubbed[*node as usize] -= (axes.e[0] * t1 + axes.e[1] * t2) * *share;
                 }
             }
@@ -73,7 +88,7 @@ impl Mortar {
         let of = |k: usize| {
             let (face, s) = &self.places[k];
             let (measure, projected) = (&found.measures[k], &found.projected[k]);
-            let placed = found.sides.slave.placed(*face, s, false);
+            let placed = found.sides.slave.placed(*face, s);
             let mut out = SiteResult { x: placed.x, ..SiteResult::default() };
             if !self.sees(k, measure.weight) {
                 return out;
@@ -96,8 +111,38 @@ impl Mortar {
             out
         };
         let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
-        show(&self.nodes, found.sides.slave.faces().0, (&found.cover, &found.pairs), self.law(), &mut results);
+        show(&self.nodes, found.sides.slave.faces().0, found.measured.as_ref(), self.law(), &mut results);
         results
+    }
+
+    /// Forces of all faces, with their derivatives.
+    fn add_faces(&self, found: &Found<'_>, assembly: &Assembly<'_>, carried: &Carried<'_>, out: &mut Target<'_>) {
+        let wants = out.tangent.is_some();
+        let measured = found.measured.as_ref();
+        let mut add = |list: Vec<FaceTerms>| list.iter().for_each(|terms| assembly.add(terms, out));
+        match found.sides.facing() {
+            Facing::Surfaces(sides) => {
+                for faces in measured.cover.points.chunks(AT_ONCE) {
+                    add(faces.par_iter().map(|points| sides.terms(carried, points, wants)).collect());
+                }
+                let matched: Vec<&[Matched]> = self.matched.chunk_by(|a, b| a.face == b.face).collect();
+                for faces in matched.chunks(AT_ONCE).filter(|_| wants) {
+                    add(faces.par_iter().map(|list| sides.slips(carried, list, false)).collect());
+                }
+            }
+            Facing::OnRigid(sides) => {
+                let faces: Vec<_> = measured.cover.points.iter().zip(&measured.pairs).collect();
+                for faces in faces.chunks(AT_ONCE) {
+                    let of = |(points, pairs): &(&Vec<_>, &Vec<_>)| sides.terms(carried, (points, pairs), (wants, false));
+                    add(faces.par_iter().map(of).collect());
+                }
+                let list = self.matched.iter().zip(&measured.matched);
+                let list: Vec<_> = list.filter_map(|(m, pair)| Some((m, pair.as_ref()?))).collect();
+                for of_face in list.chunk_by(|a, b| a.0.face == b.0.face).filter(|_| wants) {
+                    add(vec![rigid::slips(carried, of_face, false)]);
+                }
+            }
+        }
     }
 
     /// The direction of the first axis of a node, by what is asked for; `normal` is that of the node.
@@ -184,7 +229,7 @@ impl Interaction for Mortar {
         self.small.iter_mut().for_each(SmallSliding::forget);
         let Ok(sides) = Sides::new(self, at) else { return };
         for (k, (face, s)) in self.places.iter().enumerate() {
-            let placed = sides.slave.placed(*face, s, false);
+            let placed = sides.slave.placed(*face, s);
             let normal = sides.slave.normal(*face, s).normalize();
             let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
             let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
@@ -196,19 +241,15 @@ impl Interaction for Mortar {
 
     fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
         let found = self.found(at, own.multipliers)?;
-        let assembly = Assembly {
-            contact: self,
-            sides: &found.sides,
-            own,
-            measures: &found.measures,
-            projected: &found.projected,
-        };
+        let assembly =
+            Assembly { contact: self, own, measures: &found.measures, projected: &found.projected };
         assembly.add_nodes(out);
-        for (points, pairs) in found.cover.points.iter().zip(&found.pairs) {
-            assembly.add_face(points, pairs, out);
+        let carried = assembly.carried();
+        match &found.linear {
+            Some(at_rest) => assembly.add_linear(&at_rest.terms, &carried, out),
+            None => self.add_faces(&found, &assembly, &carried, out),
         }
-        assembly.add_slips(&found.separations, out);
-        Ok(found.lost)
+        Ok(found.measured.lost)
     }
 
     fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
@@ -218,7 +259,7 @@ impl Interaction for Mortar {
     fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         let found = self.found(at, own.multipliers)?;
         let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
-        let points = (&found.cover, &found.pairs[..]);
+        let points = found.measured.as_ref();
         let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
         let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
         Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
@@ -274,16 +315,13 @@ impl Interaction for Mortar {
         self.memory = memory;
         self.matched.clear();
         if self.friction.is_some() {
-            let points = found.cover.points.iter().flatten().zip(found.pairs.iter().flatten());
-            for (point, pair) in points {
-                let Some(pair) = pair else { continue };
-                let on = match (point.master, &pair.stuck) {
-                    (Some((face, at)), _) => MaterialPoint { patch: face as u32, xi: at },
-                    (None, Some(stuck)) => stuck.point,
-                    (None, None) => continue,
-                };
-                self.matched.push(Matched { face: point.face, s: point.s, on, shares: point.shares.clone() });
-            }
+            let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
+                face: point.face,
+                s: point.s,
+                on: met.on,
+                shares: point.shares.clone(),
+            };
+            self.matched.extend(found.measured.points().map(of));
         }
         let displacements = [&self.slave, &self.master].map(|part| at.side(part).1.configuration.clone());
         if let Some(small) = &mut self.small {

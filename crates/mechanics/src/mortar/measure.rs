@@ -1,13 +1,16 @@
-//! The measures of a mortar contact in a state: weighted gaps and slips of the nodes, and the pairs they are made of.
+//! The measures of a mortar contact in a state: weighted gaps and slips of the nodes, and the points they are means of.
 
 use super::Mortar;
+use super::across::Surfaces;
 use super::axes::Axes;
 use super::cover::{Cover, CoveredPoint};
+use super::rigid::OnRigid;
 use crate::body::PlaceError;
 use crate::interaction::Bodies;
-use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
-use crate::points::{Anchor, Master, MaterialPoint, Met, Order};
+use crate::pair::Pair;
+use crate::points::{Master, MaterialPoint};
 use crate::surface::{Local, Surface};
+use rayon::prelude::*;
 use signorini_geometry::Vector;
 
 /// A point of the slave side with the point of the master that it was matched with at the last state.
@@ -28,6 +31,7 @@ pub(super) struct Sides<'a> {
     pub first: [u32; 2],
     /// The rotation vector of a rigid master at the last state.
     since: Vector<3>,
+    friction: bool,
 }
 
 /// What the slave side meets.
@@ -36,14 +40,49 @@ pub(super) enum Opposite<'a> {
     Rigid(Box<dyn Master + 'a>),
 }
 
-/// What separates a matched pair now, with the unknowns that change it.
-#[derive(Clone)]
-pub(super) struct Separation {
-    pub unknowns: Vec<u32>,
+/// The same, as the points of a face see it.
+pub(super) enum Facing<'a> {
+    Surfaces(Surfaces<'a>),
+    OnRigid(OnRigid<'a>),
+}
+
+/// What a point of the slave side meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MetPoint {
+    pub gap: f64,
+    /// Unit vector outward from the master.
     pub normal: Vector<3>,
-    pub d_normal: Vec<Vector<3>>,
+    /// Of a surface the face and its coordinates, of a rigid body the point in its own axes.
+    pub on: MaterialPoint,
+}
+
+/// How far a matched point is from where it was matched, and the normal there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Apart {
+    pub normal: Vector<3>,
     pub vector: Vector<3>,
-    pub d_vector: Vec<Vector<3>>,
+}
+
+/// All points in a state.
+pub(super) struct Measured {
+    pub cover: Cover,
+    /// What each point meets, face by face.
+    pub met: Vec<Vec<Option<MetPoint>>>,
+    /// How far each matched point is apart; none without friction.
+    pub apart: Vec<Option<Apart>>,
+    /// The pairs with a rigid master, of points and of matched points; else none.
+    pub pairs: Vec<Vec<Option<Pair>>>,
+    pub matched: Vec<Option<Pair>>,
+    /// Points that could not be measured.
+    pub lost: usize,
+}
+
+impl Measured {
+    /// The points that meet something, with what they meet.
+    pub fn points(&self) -> impl Iterator<Item = (&CoveredPoint, &MetPoint)> {
+        let all = self.cover.points.iter().flatten().zip(self.met.iter().flatten());
+        all.filter_map(|(point, met)| Some((point, met.as_ref()?)))
+    }
 }
 
 /// A node in a state: means over the area of its dual function.
@@ -71,11 +110,23 @@ impl<'a> Sides<'a> {
             None => Opposite::Rigid(master.master(group, other)?),
         };
         let first = [at.first[contact.slave.body], at.first[contact.master.body]];
-        Ok(Sides { slave: slave_surface, master, first, since: contact.turned })
+        let friction = contact.friction.is_some();
+        Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction })
+    }
+
+    pub fn facing(&self) -> Facing<'_> {
+        let (slave, first) = (self.slave.as_ref(), self.first);
+        match &self.master {
+            Opposite::Surface(master) => Facing::Surfaces(Surfaces { slave, master: master.as_ref(), first }),
+            Opposite::Rigid(master) => {
+                let (since, friction) = (self.since, self.friction);
+                Facing::OnRigid(OnRigid { slave, master: master.as_ref(), first, since, friction })
+            }
+        }
     }
 
     /// What sees the master now.
-    pub fn cover(&self, contact: &Mortar) -> Cover {
+    fn cover(&self, contact: &Mortar) -> Cover {
         match &self.master {
             Opposite::Surface(master) => {
                 contact.nodes.cut(self.slave.as_ref(), master.as_ref(), &contact.search, &contact.folded)
@@ -84,22 +135,34 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// The pair of a point; none where a rigid master is not met.
-    ///
-    /// # Errors
-    /// Why there is no pair.
-    pub fn pair(&self, point: &CoveredPoint, friction: bool, order: Order) -> Result<Pair, NoPair> {
-        let slave = self.slave.placed(point.face, &point.s, friction && order == Order::Second);
-        let met = match (&self.master, &point.master) {
-            (Opposite::Surface(surface), Some((face, at))) => Met::Cut(Box::new(surface.met(*face, at))),
-            (Opposite::Rigid(master), _) => {
-                master.nearest(&slave.x, f64::INFINITY, None).ok_or(NoPair::NoCoordinates)?
+    /// What all points meet.
+    pub fn measured(&self, contact: &Mortar) -> Measured {
+        let cover = self.cover(contact);
+        let matched = if self.friction { &contact.matched[..] } else { &[] };
+        match self.facing() {
+            Facing::Surfaces(surfaces) => {
+                let of = |point: &CoveredPoint| {
+                    let on = |face: usize, xi: Local| MaterialPoint { patch: face as u32, xi };
+                    point.master.map(|m| MetPoint { gap: m.gap, normal: m.normal, on: on(m.face, m.s) })
+                };
+                let met = cover.points.iter().map(|list| list.iter().map(of).collect()).collect();
+                let apart = matched.par_iter().map(|m| Some(surfaces.apart(m))).collect();
+                Measured { cover, met, apart, pairs: Vec::new(), matched: Vec::new(), lost: 0 }
             }
-            _ => return Err(NoPair::NoCoordinates),
-        };
-        let axis = AxisChoice::Material;
-        let since = [self.since; 2];
-        Encounter { slave: &slave, met: &met, first: self.first, stuck: None, since, friction, axis }.measure(order)
+            Facing::OnRigid(sides) => {
+                let (pairs, lost) = sides.pairs(&cover);
+                let of = |pair: &Option<Pair>| {
+                    pair.as_ref().map(|p| MetPoint { gap: p.gap, normal: p.normal, on: p.point })
+                };
+                let met = pairs.iter().map(|list| list.iter().map(of).collect()).collect();
+                let matched: Vec<Option<Pair>> = matched.par_iter().map(|m| sides.matched(m)).collect();
+                let of = |pair: &Option<Pair>| {
+                    pair.as_ref().map(|pair| Apart { normal: pair.normal, vector: pair.elastic })
+                };
+                let apart = matched.iter().map(of).collect();
+                Measured { cover, met, apart, pairs, matched, lost }
+            }
+        }
     }
 
     /// The rotation vector of a rigid master.
@@ -109,85 +172,21 @@ impl<'a> Sides<'a> {
             Opposite::Rigid(master) => master.at(&MaterialPoint::default()).turning.unwrap_or_default().turn,
         }
     }
-
-    /// How far a matched pair is apart now.
-    ///
-    /// # Errors
-    /// Why there is no pair.
-    pub fn separation(&self, matched: &Matched) -> Result<Separation, NoPair> {
-        let slave = self.slave.placed(matched.face, &matched.s, false);
-        match &self.master {
-            Opposite::Surface(surface) => {
-                let averaged = slave.averaged.as_ref().ok_or(NoPair::NoCoordinates)?;
-                let length = averaged.vector.norm();
-                let normal = -averaged.vector / length;
-                let foot = surface.met(matched.on.patch as usize, &matched.on.xi);
-                let zero = Vector::<3>::zeros();
-                let mut out = Separation {
-                    unknowns: Vec::new(),
-                    normal,
-                    d_normal: Vec::new(),
-                    vector: slave.x - foot.jet.x,
-                    d_vector: Vec::new(),
-                };
-                let mut add = |unknown: u32, dn: Vector<3>, dv: Vector<3>| {
-                    out.unknowns.push(unknown);
-                    out.d_normal.push(dn);
-                    out.d_vector.push(dv);
-                };
-                slave.functions.iter().for_each(|f| add(self.first[0] + f.unknown, zero, f.value));
-                for f in &averaged.functions {
-                    let dn = (normal * normal.dot(&f.value) - f.value) / length;
-                    add(self.first[0] + f.unknown, dn, zero);
-                }
-                foot.functions.iter().for_each(|f| add(self.first[1] + f.unknown, zero, -f.value));
-                Ok(out)
-            }
-            Opposite::Rigid(master) => {
-                let met = master.nearest(&slave.x, f64::INFINITY, None).ok_or(NoPair::NoCoordinates)?;
-                let stuck = Stuck { point: matched.on, ..Stuck::default() };
-                let anchor: Anchor = master.at(&matched.on);
-                let encounter = Encounter {
-                    slave: &slave,
-                    met: &met,
-                    first: self.first,
-                    stuck: Some((&stuck, &anchor)),
-                    since: [self.since; 2],
-                    friction: true,
-                    axis: AxisChoice::Material,
-                };
-                let pair = encounter.measure(Order::First)?;
-                Ok(Separation {
-                    unknowns: pair.unknowns,
-                    normal: pair.normal,
-                    d_normal: pair.d_normal,
-                    vector: pair.elastic,
-                    d_vector: pair.d_elastic,
-                })
-            }
-        }
-    }
 }
 
 impl Mortar {
-    /// Gaps and slips of all nodes, from the pairs of all points and the matched ones.
-    pub(super) fn measures(
-        &self,
-        cover: &Cover,
-        pairs: &[Vec<Option<Pair>>],
-        separations: &[Option<Separation>],
-    ) -> Vec<NodeMeasure> {
+    /// Gaps and slips of all nodes, from what their points meet.
+    pub(super) fn measures(&self, measured: &Measured) -> Vec<NodeMeasure> {
         let mut out = vec![NodeMeasure::default(); self.whole.len()];
-        for (point, pair) in cover.points.iter().flatten().zip(pairs.iter().flatten()) {
-            let Some(pair) = pair else { continue };
+        for (point, met) in measured.points() {
             for (node, share) in &point.shares {
                 let own = &mut out[*node as usize];
                 own.weight += share;
-                own.gap += share * pair.gap;
-                own.normal += pair.normal * *share;
+                own.gap += share * met.gap;
+                own.normal += met.normal * *share;
             }
         }
-        for (matched, apart) in self.matched.iter().zip(separations) {
+        for (matched, apart) in self.matched.iter().zip(&measured.apart) {
             let Some(apart) = apart else { continue };
             for (node, share) in &matched.shares {
                 let Some(axes) = self.axes(*node, &apart.normal) else { continue };
@@ -211,5 +210,12 @@ impl Mortar {
             return Some(Axes::in_plane(normal, if self.is_across() { 0 } else { 1 }));
         }
         Axes::in_space(normal, &self.memory[node as usize].along)
+    }
+
+    /// Those along which friction is unknown, with their places in the traction of a node.
+    pub(super) fn axes_of(&self, node: u32, normal: &Vector<3>) -> Vec<(usize, Vector<3>)> {
+        let slots = &self.slots()[1..];
+        let axes = if slots.is_empty() { None } else { self.axes(node, normal) };
+        axes.map_or(Vec::new(), |axes| slots.iter().map(|slot| (*slot, axes.e[slot - 1])).collect())
     }
 }

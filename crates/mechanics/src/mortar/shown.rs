@@ -1,8 +1,8 @@
 //! What the nodes of a mortar contact show beside the tractions that they carry: the recovered pressure, and the area in
 //! contact, which ends within faces.
 
-use super::cover::{Cover, Nodes};
-use crate::pair::Pair;
+use super::cover::Nodes;
+use super::measure::Measured;
 use crate::shown_surface::SharedSite;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
@@ -10,14 +10,11 @@ use signorini_contact::{
     ContactSurface, ContactZone, Given, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
 };
 
-/// The points of the slave side, and of each what it met, face by face.
-type Points<'a> = (&'a Cover, &'a [Vec<Option<Pair>>]);
-
 /// Completes the results of the nodes.
 pub(super) fn show(
     nodes: &Nodes,
     faces: Faces<'_>,
-    points: Points<'_>,
+    points: &Measured,
     law: Option<&dyn Law>,
     results: &mut [SiteResult],
 ) {
@@ -29,7 +26,7 @@ pub(super) fn show(
 }
 
 /// The zone of contact of nodes with these results.
-pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, results: &[SiteResult]) -> ContactZone {
+pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: &Measured, results: &[SiteResult]) -> ContactZone {
     let Carrying { points, states, .. } = Carrying::new(points, results);
     match (nodes, faces) {
         (Nodes::Plane(nodes), Faces::Plane(faces)) => zone(faces, nodes, &points, &states),
@@ -42,10 +39,10 @@ pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: Points<'_>, resul
 pub(super) fn shared_of(
     nodes: &Nodes,
     faces: Faces<'_>,
-    points: Points<'_>,
+    points: &Measured,
     results: &[SiteResult],
 ) -> Vec<SharedSite> {
-    let given = &points.0.given;
+    let given = &points.cover.given;
     if given.is_empty() {
         return Vec::new();
     }
@@ -79,9 +76,8 @@ fn is_active(result: &SiteResult) -> bool {
 }
 
 impl Carrying {
-    fn new((cover, pairs): Points<'_>, results: &[SiteResult]) -> Self {
-        let points = (cover.points.iter().flatten().zip(pairs.iter().flatten()))
-            .filter(|(_, pair)| pair.is_some())
+    fn new(measured: &Measured, results: &[SiteResult]) -> Self {
+        let points = (measured.points())
             .map(|(point, _)| {
                 let area = point.shares.iter().map(|(_, share)| share).sum();
                 let force = point.shares.iter().map(|(node, share)| share * results[*node as usize].pressure).sum();
@@ -100,7 +96,7 @@ impl Carrying {
             states: results.iter().map(state).collect(),
             counts_at: (0..results.len()).collect(),
         };
-        for given in &cover.given {
+        for given in &measured.cover.given {
             let [from, to] = [given.from as usize, given.to as usize];
             (out.multiplier[from], out.active[from], out.counts_at[from]) = (out.multiplier[to], out.active[to], to);
             out.states[from] =
@@ -113,12 +109,12 @@ impl Carrying {
 fn show_on<const D: usize>(
     nodes: &PressureNodes<D>,
     faces: &dyn ContactSurface<D>,
-    (cover, pairs): Points<'_>,
+    measured: &Measured,
     law: Option<&dyn Law>,
     results: &mut [SiteResult],
 ) {
-    let Carrying { points, multiplier, active, states, counts_at } = Carrying::new((cover, pairs), results);
-    let pressure = recovered(faces, nodes, &points, &multiplier, &active, &cover.given);
+    let Carrying { points, multiplier, active, states, counts_at } = Carrying::new(measured, results);
+    let pressure = recovered(faces, nodes, &points, &multiplier, &active, &measured.cover.given);
     let mut area = vec![0.0; results.len()];
     for (face, whole) in zone(faces, nodes, &points, &states).face_area.into_iter().enumerate() {
         let carrying: Vec<usize> =

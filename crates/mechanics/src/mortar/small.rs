@@ -2,12 +2,13 @@
 //! displacements. Rigid masters are where they are at the time.
 
 use super::Mortar;
-use super::cover::Cover;
-use super::measure::{Separation, Sides};
+use super::measure::{Facing, Measured, NodeMeasure, Sides};
+use super::rigid;
+use super::terms::{Carried, FaceTerms, Line};
 use crate::body::{BodyState, PlaceError};
 use crate::interaction::Bodies;
-use crate::pair::Pair;
-use signorini_geometry::Vector;
+use signorini_contact::compress;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 /// The measures with the bodies at rest, and the displacements from which slips count.
@@ -20,19 +21,11 @@ pub(super) struct SmallSliding {
 }
 
 /// Both sides with deformable bodies at rest.
-struct AtRest {
-    cover: Cover,
-    pairs: Vec<Vec<Option<Pair>>>,
-    separations: Vec<Option<Separation>>,
-    lost: usize,
-}
-
-/// What sees what, and its measures in a state.
-pub(super) struct Measured {
-    pub cover: Cover,
-    pub pairs: Vec<Vec<Option<Pair>>>,
-    pub separations: Vec<Option<Separation>>,
-    pub lost: usize,
+pub(super) struct AtRest {
+    pub measured: Arc<Measured>,
+    measures: Vec<NodeMeasure>,
+    /// Rows and columns of all nodes.
+    pub terms: FaceTerms,
 }
 
 impl SmallSliding {
@@ -40,61 +33,53 @@ impl SmallSliding {
     pub fn forget(&mut self) {
         self.at_rest = OnceLock::new();
     }
-}
 
-/// A pair whose gap varies as it opens, along a normal that does not turn: what moves the normal only is left out.
-fn linear(pair: &Pair) -> Pair {
-    let rubs = !pair.slip.is_empty();
-    let counts = |k: &usize| pair.opening[*k] != 0.0 || (rubs && pair.slip[*k] != Vector::<3>::zeros());
-    let kept: Vec<usize> = (0..pair.unknowns.len()).filter(counts).collect();
-    let opening: Vec<f64> = kept.iter().map(|k| pair.opening[*k]).collect();
-    let vectors = |list: &[Vector<3>]| kept.iter().filter_map(|k| list.get(*k).copied()).collect();
-    let mut out = Pair::default();
-    (out.gap, out.normal, out.point, out.stuck) = (pair.gap, pair.normal, pair.point, pair.stuck);
-    out.unknowns = kept.iter().map(|k| pair.unknowns[*k]).collect();
-    out.slip = vectors(&pair.slip);
-    out.d_normal = if rubs { vec![Vector::<3>::zeros(); kept.len()] } else { Vec::new() };
-    out.d_gap.clone_from(&opening);
-    out.opening = opening;
-    out
-}
-
-impl Mortar {
-    /// What sees what in a state.
-    pub(super) fn measured(&self, sides: &Sides<'_>, at: Bodies<'_>) -> Result<Measured, PlaceError> {
-        let Some(small) = &self.small else {
-            let cover = sides.cover(self);
-            let (pairs, lost) = self.pairs(sides, &cover);
-            let separations = if self.friction.is_some() { self.separations(sides) } else { Vec::new() };
-            return Ok(Measured { cover, pairs, separations, lost });
-        };
-        let at_rest = match small.at_rest.get() {
+    /// What is found at rest, and the measures of the nodes in a state.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    pub fn found(&self, contact: &Mortar, at: Bodies<'_>) -> Result<(Arc<AtRest>, Vec<NodeMeasure>), PlaceError> {
+        let at_rest = match self.at_rest.get() {
             Some(found) => Arc::clone(found),
-            None => Arc::clone(small.at_rest.get_or_init({
-                let found = Arc::new(self.at_rest(at)?);
-                move || found
-            })),
+            None => {
+                let found = Arc::new(contact.at_rest(at)?);
+                Arc::clone(self.at_rest.get_or_init(|| found))
+            }
         };
-        let displacement = |side: usize| &at.side([&self.slave, &self.master][side]).1.configuration[..];
-        let now = [displacement(0), displacement(1)];
-        let first = sides.first;
+        let parts = [&contact.slave, &contact.master];
+        let now = parts.map(|part| &at.side(part).1.configuration[..]);
+        let first = parts.map(|part| at.first[part.body]);
         let moved = |unknown: u32, of: [&[f64]; 2]| {
             let side = usize::from(!(first[0]..first[0] + now[0].len() as u32).contains(&unknown));
             of[side].get((unknown - first[side]) as usize).copied().unwrap_or(0.0)
         };
-        let mut pairs = at_rest.pairs.clone();
-        for pair in pairs.iter_mut().flatten().flatten() {
-            pair.gap += pair.unknowns.iter().zip(&pair.d_gap).map(|(u, d)| d * moved(*u, now)).sum::<f64>();
+        let since = self.since.each_ref().map(Vec::as_slice);
+        let mut measures = at_rest.measures.clone();
+        for line in &at_rest.terms.gaps {
+            let own = &mut measures[line.node as usize];
+            own.gap += line.entries.iter().map(|(u, d)| d * moved(*u, now)).sum::<f64>() / own.weight;
         }
-        let mut separations = at_rest.separations.clone();
-        let since = small.since.each_ref().map(Vec::as_slice);
-        for apart in separations.iter_mut().flatten() {
-            let change = |u: u32| moved(u, now) - moved(u, since);
-            apart.vector += apart.unknowns.iter().zip(&apart.d_vector).map(|(u, d)| d * change(*u)).sum::<Vector<3>>();
+        for line in &at_rest.terms.slips {
+            let own = &mut measures[line.node as usize];
+            let change = line.entries.iter().map(|(u, d)| d * (moved(*u, now) - moved(*u, since))).sum::<f64>();
+            own.slip[line.slot - 1] += change / own.matched;
         }
-        Ok(Measured { cover: at_rest.cover.clone(), pairs, separations, lost: at_rest.lost })
+        Ok((at_rest, measures))
     }
+}
 
+/// The sums of lines of the same node and component.
+fn summed(lines: impl Iterator<Item = Line>) -> Vec<Line> {
+    let mut sums: BTreeMap<(u32, usize), Vec<(u32, f64)>> = BTreeMap::new();
+    lines.for_each(|line| sums.entry((line.node, line.slot)).or_default().extend(line.entries));
+    let summed = |((node, slot), mut entries)| {
+        compress(&mut entries);
+        Line { node, slot, entries }
+    };
+    sums.into_iter().map(summed).collect()
+}
+
+impl Mortar {
     fn at_rest(&self, at: Bodies<'_>) -> Result<AtRest, PlaceError> {
         let mut states = vec![BodyState::default(); at.states.len()];
         for part in [&self.slave, &self.master] {
@@ -102,14 +87,36 @@ impl Mortar {
             states[part.body] = if body.is_rigid() { state.clone() } else { body.start() };
         }
         let sides = Sides::new(self, Bodies { states: &states, ..at })?;
-        let cover = sides.cover(self);
-        let (mut pairs, lost) = self.pairs(&sides, &cover);
-        for pair in pairs.iter_mut().flatten().flatten() {
-            *pair = linear(pair);
+        let measured = sides.measured(self);
+        let count = self.whole.len();
+        let carried = Carried { contact: self, tractions: vec![[0.0; 3]; count], acts: vec![true; count] };
+        let mut faces = Vec::new();
+        match sides.facing() {
+            Facing::Surfaces(surfaces) => {
+                faces.extend(measured.cover.points.iter().map(|points| surfaces.terms(&carried, points, true)));
+                let matched = self.matched.chunk_by(|a, b| a.face == b.face);
+                faces.extend(matched.map(|list| surfaces.slips(&carried, list, true)));
+            }
+            Facing::OnRigid(sides) => {
+                let points = measured.cover.points.iter().map(Vec::as_slice);
+                let pairs = measured.pairs.iter().map(Vec::as_slice);
+                faces.extend(points.zip(pairs).map(|of| sides.terms(&carried, of, (true, true))));
+                let list = self.matched.iter().zip(&measured.matched);
+                let list: Vec<_> = list.filter_map(|(m, pair)| Some((m, pair.as_ref()?))).collect();
+                let of_faces = list.chunk_by(|a, b| a.0.face == b.0.face);
+                faces.extend(of_faces.map(|list| rigid::slips(&carried, list, true)));
+            }
         }
-        let mut separations = if self.friction.is_some() { self.separations(&sides) } else { Vec::new() };
-        separations.iter_mut().flatten().for_each(|apart| apart.d_normal.fill(Vector::<3>::zeros()));
-        Ok(AtRest { cover, pairs, separations, lost })
+        let pushes = summed(faces.iter_mut().flat_map(|terms| std::mem::take(&mut terms.pushes)));
+        let slips = summed(faces.iter_mut().flat_map(|terms| std::mem::take(&mut terms.slips)));
+        // Along a normal that does not turn a gap varies as it opens.
+        let gap = |line: &Line| {
+            let entries = line.entries.iter().map(|(u, v)| (*u, -v)).collect();
+            Line { entries, ..*line }
+        };
+        let gaps = pushes.iter().filter(|line| line.slot == 0).map(gap).collect();
+        let terms = FaceTerms { pushes, gaps, slips, ..FaceTerms::default() };
+        Ok(AtRest { measures: self.measures(&measured), measured: Arc::new(measured), terms })
     }
 
     /// Makes small sliding the choice: for bodies whose surfaces move by much less than their cells.

@@ -189,8 +189,8 @@ impl<const D: usize> Faces<D> {
     fn averaged(&self, surface: &Surface<D>, place: usize, s: &Local) -> Normal<D> {
         let shape = self.face(surface.faces[place]).shape;
         let mut out = Vec::new();
-        for (corner, terms) in shape.vertices().iter().zip(&self.vertex_normals(surface)[place]) {
-            let value = vertex_function(shape, corner, s);
+        for (k, terms) in self.vertex_normals(surface)[place].iter().enumerate() {
+            let value = shape.vertex_function(k, s);
             if value.abs() > NOTHING {
                 out.extend(terms.iter().map(|(share, tangents)| (value * share, tangents.clone())));
             }
@@ -233,8 +233,8 @@ impl<const D: usize> Faces<D> {
     pub fn normal_field(&self, face: u32, s: &Local, at_vertices: &[Direction]) -> NormalField {
         let shape = self.face(face).shape;
         let mut out = NormalField::default();
-        for (corner, direction) in shape.vertices().iter().zip(at_vertices) {
-            let value = vertex_function(shape, corner, s);
+        for (k, (corner, direction)) in shape.vertices().iter().zip(at_vertices).enumerate() {
+            let value = shape.vertex_function(k, s);
             let slopes = vertex_slopes(shape, corner, s);
             out.vector += direction.vector * value;
             (0..2).for_each(|a| out.slopes[a] += direction.vector * slopes[a]);
@@ -455,17 +455,7 @@ pub(super) fn merge(functions: &mut Vec<Function>) {
     });
 }
 
-/// The function of a vertex of a face with straight edges.
-pub(super) fn vertex_function(shape: CellShape, corner: &Local, s: &Local) -> f64 {
-    match shape {
-        CellShape::Triangle if corner[0] + corner[1] == 0.0 => 1.0 - s[0] - s[1],
-        CellShape::Triangle => corner[0] * s[0] + corner[1] * s[1],
-        CellShape::Line => 0.5 * (1.0 + corner[0] * s[0]),
-        _ => 0.25 * (1.0 + corner[0] * s[0]) * (1.0 + corner[1] * s[1]),
-    }
-}
-
-/// Its derivatives along both coordinates.
+/// The derivatives of the function of a vertex of a face with straight edges.
 fn vertex_slopes(shape: CellShape, corner: &Local, s: &Local) -> [f64; 2] {
     let (a, b) = (corner[0], corner[1]);
     match shape {

@@ -82,6 +82,17 @@ impl CellShape {
         }
     }
 
+    /// The derivatives of that function along both coordinates.
+    pub fn vertex_slopes(self, vertex: usize, s: &Local) -> [f64; 2] {
+        let [a, b, _] = self.vertices()[vertex];
+        match self {
+            Triangle if vertex == 0 => [-1.0, -1.0],
+            Triangle => [a, b],
+            Line => [0.5 * a, 0.0],
+            _ => [0.25 * a * (1.0 + b * s[1]), 0.25 * b * (1.0 + a * s[0])],
+        }
+    }
+
     /// Pairs of vertices; edges of tensor shapes run along their positive axis.
     pub fn edges(self) -> &'static [[usize; 2]] {
         match self {

@@ -13,6 +13,7 @@
 //! The gap is `(x_slave - x_master)·n` with the outward normal of the master, negative where the bodies penetrate; a
 //! pressure is positive.
 
+mod face_maps;
 pub mod kinematics;
 pub mod law;
 pub mod mortar;
@@ -25,6 +26,7 @@ pub mod surface;
 mod testing;
 pub mod zone;
 
+pub use face_maps::FaceMaps;
 pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};

@@ -14,6 +14,7 @@ use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use opposite::Cut;
 use plane::intervals;
+use rayon::prelude::*;
 use signorini_basis::rules::rule;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
@@ -73,7 +74,7 @@ pub fn pieces<const D: usize>(
     candidates.iter_mut().enumerate().for_each(|(face, list)| list.retain(|other| sees(face, *other)));
     let cut = Cut { slave, master, nodes, reach, extra };
     let of = |(face, list): (usize, &Vec<usize>)| pieces_of_face(cut, face, list);
-    candidates.iter().enumerate().map(of).collect()
+    candidates.par_iter().enumerate().map(of).collect()
 }
 
 /// The points of a slave face on the pieces that see one of the master faces listed.

@@ -1,5 +1,6 @@
 //! What contact sees of a discretised body: faces with positions, and the functions that move them.
 
+use crate::face_maps::FaceMaps;
 use crate::kinematics::ShapeFunction;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
@@ -55,9 +56,24 @@ pub fn looks_at<const D: usize>(own: &Point<D>, other: &Point<D>) -> bool {
 
 /// A surface where its displacement has brought it.
 pub struct Moved<'a, const D: usize> {
-    pub surface: &'a dyn ContactSurface<D>,
-    /// Values of all unknowns.
-    pub u: &'a [f64],
+    surface: &'a dyn ContactSurface<D>,
+    maps: FaceMaps<D>,
+}
+
+impl<'a, const D: usize> Moved<'a, D> {
+    /// By the values of all unknowns.
+    pub fn new(surface: &'a dyn ContactSurface<D>, u: &[f64]) -> Self {
+        let order = |face: usize| surface.order(face).max(surface.degree(face));
+        let shapes = (0..surface.face_count()).map(|face| (surface.shape(face), order(face)));
+        let at = |face: usize, s: &Local| {
+            let mut x = surface.at(face, s).x;
+            for f in surface.functions(face, s) {
+                x += Point::<D>::from_fn(|i, _| u[f.unknown as usize + i]) * f.value;
+            }
+            x
+        };
+        Moved { surface, maps: FaceMaps::new(shapes, at) }
+    }
 }
 
 impl<const D: usize> ContactSurface<D> for Moved<'_, D> {
@@ -78,15 +94,7 @@ impl<const D: usize> ContactSurface<D> for Moved<'_, D> {
     }
 
     fn at(&self, face: usize, s: &Local) -> FacePoint<D> {
-        let mut point = self.surface.at(face, s);
-        for f in self.surface.functions(face, s) {
-            let u = Point::<D>::from_fn(|i, _| self.u[f.unknown as usize + i]);
-            point.x += u * f.value;
-            for a in 0..D - 1 {
-                point.tangents[a] += u * f.slopes[a];
-            }
-        }
-        point
+        self.maps.at(face, s)
     }
 
     fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>) {

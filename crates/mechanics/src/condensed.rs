@@ -12,6 +12,7 @@
 //! where `C` comes to change unknowns that were eliminated, or supports hold others.
 
 use crate::body::Contribution;
+use crate::eliminated::eliminated_step;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::points::{Order, Sampling};
 use crate::system::{Assembled, AssemblyError, System, SystemState, TimedLoad};
@@ -26,8 +27,9 @@ use std::sync::{Mutex, OnceLock};
 const LEAST: usize = 1000;
 /// More unknowns are factorised with multipliers eliminated: fewer take tenths of a second in any way.
 const MANY: usize = 10_000;
-/// Most unknowns that remain: a dense factor of more takes longer than a sparse one of all.
-const MOST: usize = 5000;
+/// Most unknowns that remain of few and of many: a dense factor of more takes longer than a sparse one of all, with multipliers or
+/// with multipliers eliminated.
+const MOST: [usize; 2] = [5000, 2000];
 /// So many unknowns of surfaces that may touch remain in any case: their dense factor costs less than another one of the body.
 const ALL: usize = 2000;
 /// Otherwise of those that are needed so many times as many, and these more, before the body is factorised again.
@@ -68,7 +70,7 @@ impl System {
             let of: Vec<bool> = self.bodies.iter().map(|b| b.is_linear() && !b.places().is_empty()).collect();
             let count: usize = self.bodies.iter().zip(&of).filter(|(_, is)| **is).map(|(b, _)| b.unknowns()).sum();
             let others: usize = self.bodies.iter().zip(&of).filter(|(_, is)| !**is).map(|(b, _)| b.unknowns()).sum();
-            if count < LEAST || others > MOST { vec![false; of.len()] } else { of }
+            if count < LEAST || others > MOST[0] { vec![false; of.len()] } else { of }
         })
     }
 
@@ -113,6 +115,28 @@ impl System {
             }
         }
         of(reduced)
+    }
+
+    /// Whether all bodies are linear, and condensed where that is worth it.
+    pub(crate) fn is_all_condensed(&self) -> bool {
+        self.is_condensed().iter().all(|is| *is)
+    }
+
+    /// The step of all unknowns with multipliers eliminated, of a system whose bodies are all linear.
+    ///
+    /// # Errors
+    /// As of [`eliminated_step`].
+    pub(crate) fn eliminated_step(
+        &self,
+        out: &Assembled,
+        held: &[bool],
+        right: &[f64],
+        symbolic: &mut Symbolic,
+    ) -> Result<Vec<f64>, SolveError> {
+        self.with_reduced(None, |reduced| {
+            let count = reduced.unknowns.len();
+            eliminated_step((Some(&reduced.stiffness), &out.tangent), (count, held), right, symbolic)
+        })
     }
 
     /// The largest entry of each row of the stiffness of linear bodies, as an unknown of the system.
@@ -209,7 +233,7 @@ impl Reduced {
         self.condensation = None;
         let size = self.unknowns.len();
         let mut kept = self.with_neighbours(needed);
-        if kept.len() > MOST {
+        if kept.len() > MOST[usize::from(size >= MANY)] {
             return Err(SolveError::NotFactorised { size });
         }
         kept.sort_unstable();
@@ -320,7 +344,7 @@ impl<'a> Step<'a> {
         }
         let kept = condensation.kept().iter().map(|k| reduced.unknowns[*k as usize]);
         let n = condensation.kept().len() + others.len();
-        if n > MOST {
+        if n > MOST[0] {
             return Err(SolveError::NotFactorised { size });
         }
         let mut number = vec![ELSEWHERE; size];

@@ -40,12 +40,12 @@ struct Multiplier {
 }
 
 /// The step of all unknowns, of which the first `count` are of bodies; `held` names unknowns whose step is known, and stands in
-/// `right`. `symbolic` is kept from step to step.
+/// `right`. `constant` is what of the stiffness of bodies is not in `tangent`, and `symbolic` is kept from step to step.
 ///
 /// # Errors
 /// A stiffness that is not positive definite, or equations that are not solved in so many iterations.
 pub(crate) fn eliminated_step(
-    tangent: &Entries,
+    (constant, tangent): (Option<&SymmetricMatrix>, &Entries),
     (count, held): (usize, &[bool]),
     right: &[f64],
     symbolic: &mut Symbolic,
@@ -68,9 +68,13 @@ pub(crate) fn eliminated_step(
             (false, false) => {}
         }
     }
-    (0..count as u32).filter(|k| held[*k as usize]).for_each(|k| of_bodies.add(k, k, 1.0));
-    let whole = free.matrix(n);
-    let stiffness = of_bodies.matrix(count).symmetric_part();
+    let mut stiffness = of_bodies.matrix(count).symmetric_part();
+    drop(of_bodies);
+    if let Some(constant) = constant {
+        stiffness = stiffness.plus(constant);
+    }
+    let known: Vec<Option<f64>> = held[..count].iter().map(|held| held.then_some(0.0)).collect();
+    stiffness.prescribe(&known, &mut vec![0.0; count]);
     let diagonal = stiffness.diagonal();
     multipliers.iter_mut().for_each(|m| m.choose_spring(&diagonal));
     if multipliers.iter().any(|m| m.spring == 0.0 && m.diagonal == 0.0) {
@@ -79,7 +83,8 @@ pub(crate) fn eliminated_step(
     let springs: Vec<(&[(u32, f64)], f64)> =
         multipliers.iter().filter(|m| m.spring > 0.0).map(|m| (&m.force[..], m.spring)).collect();
     let factor = symbolic.factor(stiffness.plus(&SymmetricMatrix::of_squares(count, &springs)))?;
-    Saddle { whole, factor, multipliers, count, held }.solve(right)
+    drop(stiffness);
+    Saddle { constant, beside: free.matrix(n), factor, multipliers, count, held }.solve(right)
 }
 
 impl Multiplier {
@@ -105,8 +110,10 @@ impl Multiplier {
 
 /// The equations, and what preconditions them.
 struct Saddle<'a> {
-    /// Without rows of unknowns that are held.
-    whole: Matrix,
+    /// What of the stiffness of bodies does not change.
+    constant: Option<&'a SymmetricMatrix>,
+    /// All others, without rows of unknowns that are held.
+    beside: Matrix,
     factor: Factor,
     multipliers: Vec<Multiplier>,
     count: usize,
@@ -117,7 +124,7 @@ impl Saddle<'_> {
     fn solve(&self, right: &[f64]) -> Result<Vec<f64>, SolveError> {
         let n = right.len();
         let known: Vec<f64> = (0..n).map(|k| if self.held[k] { right[k] } else { 0.0 }).collect();
-        let moved = self.whole.multiply(&known);
+        let moved = self.product(&known);
         let left: Vec<f64> = (0..n).map(|k| if self.held[k] { 0.0 } else { right[k] - moved[k] }).collect();
         // Equations of multipliers count as the forces of their springs.
         let scale = |m: &Multiplier| {
@@ -127,7 +134,7 @@ impl Saddle<'_> {
         let scales: Vec<f64> = std::iter::repeat_n(1.0, self.count).chain(self.multipliers.iter().map(scale)).collect();
         let scaled = |x: &[f64]| x.iter().zip(&scales).map(|(x, s)| x * s).collect::<Vec<f64>>();
         let unscaled = |x: &[f64]| x.iter().zip(&scales).map(|(x, s)| x / s).collect::<Vec<f64>>();
-        let product = |y: &[f64]| Ok(Some(scaled(&self.whole.multiply(&self.preconditioned(&unscaled(y))?))));
+        let product = |y: &[f64]| Ok(Some(scaled(&self.product(&self.preconditioned(&unscaled(y))?))));
         let found = conjugate_residuals(scaled(&left), product, TOLERANCE, MOST)?;
         let found = found.ok_or(SolveError::Inaccurate { size: n, residual: f64::INFINITY })?;
         let mut x = self.preconditioned(&unscaled(&found))?;
@@ -137,6 +144,16 @@ impl Saddle<'_> {
             return Err(SolveError::Inaccurate { size: n, residual: error });
         }
         Ok(x)
+    }
+
+    /// The matrix times a step, but for rows of unknowns that are held.
+    fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = self.beside.multiply(x);
+        if let Some(constant) = self.constant {
+            let forces = constant.multiply(&x[..self.count]);
+            (0..self.count).filter(|k| !self.held[*k]).for_each(|k| out[k] += forces[k]);
+        }
+        out
     }
 
     /// The step that springs in the place of multipliers make of a residual.
@@ -160,13 +177,16 @@ impl Saddle<'_> {
     /// The largest residual relative to the terms of its equation, with displacements as large as the largest.
     fn error(&self, x: &[f64], right: &[f64]) -> f64 {
         let farthest = x[..self.count].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let (mut left, mut sizes) = (right.to_vec(), right.iter().map(|r| r.abs()).collect::<Vec<f64>>());
+        let moved = self.product(x);
+        let left: Vec<f64> = right.iter().zip(moved).map(|(r, m)| r - m).collect();
+        let mut sizes: Vec<f64> = right.iter().map(|r| r.abs()).collect();
         for j in 0..x.len() {
             let reach = if j < self.count { farthest } else { x[j].abs() };
-            self.whole.column(j).for_each(|(i, v)| {
-                left[i] -= v * x[j];
-                sizes[i] += v.abs() * reach;
-            });
+            self.beside.column(j).for_each(|(i, v)| sizes[i] += v.abs() * reach);
+        }
+        for (i, j, v) in self.constant.into_iter().flat_map(SymmetricMatrix::entries) {
+            sizes[i] += v.abs() * farthest;
+            sizes[j] += v.abs() * farthest;
         }
         let of = |k: usize| if self.held[k] { 0.0 } else { left[k].abs() / sizes[k].max(f64::MIN_POSITIVE) };
         (0..x.len()).map(of).fold(0.0f64, |m, e| if e > m || e.is_nan() { e } else { m })

@@ -296,18 +296,25 @@ impl Equations for Problem<'_> {
                 let sizes = self.system.row_sizes(&out, self.stiffness);
                 self.add_grain(&mut out, &held, &sizes);
             }
-            match self.system.condensed_step(&out, &held, &right) {
-                Ok(step) => {
-                    self.solved = Solved::Condensed;
-                    return Ok(step);
-                }
-                // Too many unknowns remain, or nothing holds them.
-                Err(_) => {
-                    self.stiffness = Stiffness::InTangent;
-                    self.solved = Solved::Direct;
-                    out = self.assemble(at, Order::Second)?;
+            if self.solved != Solved::Eliminated
+                && let Ok(step) = self.system.condensed_step(&out, &held, &right)
+            {
+                self.solved = Solved::Condensed;
+                return Ok(step);
+            }
+            // Too many unknowns remain, or nothing holds them.
+            if let Some(symbolic) = self.symbolic.as_mut().filter(|_| self.system.is_all_condensed()) {
+                match self.system.eliminated_step(&out, &held, &right, symbolic) {
+                    Ok(step) => {
+                        self.solved = Solved::Eliminated;
+                        return Ok(step);
+                    }
+                    Err(_) => self.symbolic = None,
                 }
             }
+            self.stiffness = Stiffness::InTangent;
+            self.solved = Solved::Direct;
+            out = self.assemble(at, Order::Second)?;
         }
         // Without it once more where a stiffness is not positive definite, or far from symmetric.
         if let Some(mut symbolic) = self.symbolic.take() {
@@ -316,7 +323,7 @@ impl Equations for Problem<'_> {
                 self.add_grain(&mut out, &held, &sizes);
             }
             let count = self.is_spin.len();
-            if let Ok(step) = eliminated_step(&out.tangent, (count, &held), &right, &mut symbolic) {
+            if let Ok(step) = eliminated_step((None, &out.tangent), (count, &held), &right, &mut symbolic) {
                 (self.symbolic, self.solved) = (Some(symbolic), Solved::Eliminated);
                 return Ok(step);
             }

@@ -1,7 +1,7 @@
 //! Bodies and their boundaries.
 
 use crate::material::{Elastic, Space};
-use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
+use signorini_contact::{ContactSurface, FaceMaps, FacePoint, ShapeFunction};
 use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
 use signorini_geometry::Point;
@@ -106,7 +106,9 @@ impl<const D: usize> Bodies<D> {
     pub fn surface(&self, body: usize, sides: Vec<Side>) -> BodySurface<D> {
         let b = self.list[body].clone();
         let functions = sides.iter().map(|s| b.dofs.on_side(*s)).collect();
-        BodySurface { axisymmetric: self.space == Space::Axisymmetric, functions, body: b, sides }
+        let map = |side: &Side| (b.mesh.side_shape(*side), b.mesh.map(side.cell as usize).order());
+        let at_rest = FaceMaps::new(sides.iter().map(map), |face, s| b.mesh.on_side(sides[face], s).0);
+        BodySurface { axisymmetric: self.space == Space::Axisymmetric, functions, at_rest, body: b, sides }
     }
 }
 
@@ -117,6 +119,7 @@ pub struct BodySurface<const D: usize> {
     pub sides: Vec<Side>,
     /// Places of the functions of each side in the list of its cell.
     functions: Vec<Vec<usize>>,
+    at_rest: FaceMaps<D>,
 }
 
 impl<const D: usize> BodySurface<D> {
@@ -156,8 +159,7 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
     }
 
     fn at(&self, face: usize, s: &Local) -> FacePoint<D> {
-        let (x, tangents) = self.body.mesh.on_side(self.sides[face], s);
-        FacePoint { x, tangents }
+        self.at_rest.at(face, s)
     }
 
     fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>) {
@@ -178,14 +180,11 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
         let cell = side.cell as usize;
         let basis = self.body.dofs.basis(cell);
         let (xi, along) = basis.shape().on_side(side.side as usize, s);
-        let mut at = Values::default();
-        basis.tabulate(&xi, &mut at);
-        (self.functions[face].iter())
-            .map(|&k| {
+        (basis.derivatives(&self.functions[face], &xi, &along, 1).into_iter().zip(&self.functions[face]))
+            .map(|(d, &k)| {
                 let (function, sign) = self.body.dofs.function(cell, k);
-                let slope = |a: &Local| sign * (0..3).map(|i| at.gradient[k][i] * a[i]).sum::<f64>();
                 let unknown = (self.body.first + D * function as usize) as u32;
-                ShapeFunction { unknown, value: sign * at.value[k], slopes: [slope(&along[0]), slope(&along[1])] }
+                ShapeFunction { unknown, value: sign * d[0], slopes: [sign * d[1], sign * d[2]] }
             })
             .collect()
     }

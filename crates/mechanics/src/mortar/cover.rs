@@ -153,13 +153,13 @@ fn cut<const D: usize>(
         let normal = placed[0].normal(face, s);
         Point::<D>::from_fn(|k, _| normal[k])
     });
-    let moved = Moved { surface: slave, u: placed[0].faces().1 };
-    let other = Moved { surface: master, u: placed[1].faces().1 };
     let sees = |face: usize, other: usize| search.facing.slave(face) && search.facing.master(other);
     if search.at_rest {
         let points = segments(slave, master, &nodes, search.reach, &sees);
         return cover(&nodes, slave, points, (folded, true));
     }
+    let moved = Moved::new(slave, placed[0].faces().1);
+    let other = Moved::new(master, placed[1].faces().1);
     let mut points = pieces(&moved, &other, &nodes, (search.reach, search.extra), &sees);
     for (face, list) in points.iter_mut().enumerate() {
         for point in list {

@@ -133,7 +133,8 @@ impl Mortar {
             Facing::OnRigid(sides) => {
                 let faces: Vec<_> = measured.cover.points.iter().zip(&measured.pairs).collect();
                 for faces in faces.chunks(AT_ONCE) {
-                    let of = |(points, pairs): &(&Vec<_>, &Vec<_>)| sides.terms(carried, (points, pairs), (wants, false));
+                    let of =
+                        |(points, pairs): &(&Vec<_>, &Vec<_>)| sides.terms(carried, (points, pairs), (wants, false));
                     add(faces.par_iter().map(of).collect());
                 }
                 let list = self.matched.iter().zip(&measured.matched);
@@ -241,8 +242,7 @@ impl Interaction for Mortar {
 
     fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
         let found = self.found(at, own.multipliers)?;
-        let assembly =
-            Assembly { contact: self, own, measures: &found.measures, projected: &found.projected };
+        let assembly = Assembly { contact: self, own, measures: &found.measures, projected: &found.projected };
         assembly.add_nodes(out);
         let carried = assembly.carried();
         match &found.linear {

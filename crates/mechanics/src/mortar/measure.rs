@@ -151,14 +151,12 @@ impl<'a> Sides<'a> {
             }
             Facing::OnRigid(sides) => {
                 let (pairs, lost) = sides.pairs(&cover);
-                let of = |pair: &Option<Pair>| {
-                    pair.as_ref().map(|p| MetPoint { gap: p.gap, normal: p.normal, on: p.point })
-                };
+                let of =
+                    |pair: &Option<Pair>| pair.as_ref().map(|p| MetPoint { gap: p.gap, normal: p.normal, on: p.point });
                 let met = pairs.iter().map(|list| list.iter().map(of).collect()).collect();
                 let matched: Vec<Option<Pair>> = matched.par_iter().map(|m| sides.matched(m)).collect();
-                let of = |pair: &Option<Pair>| {
-                    pair.as_ref().map(|pair| Apart { normal: pair.normal, vector: pair.elastic })
-                };
+                let of =
+                    |pair: &Option<Pair>| pair.as_ref().map(|pair| Apart { normal: pair.normal, vector: pair.elastic });
                 let apart = matched.iter().map(of).collect();
                 Measured { cover, met, apart, pairs, matched, lost }
             }

@@ -36,12 +36,7 @@ pub(super) fn zone_of(nodes: &Nodes, faces: Faces<'_>, points: &Measured, result
 }
 
 /// The nodes that gave their function to another one, with their pressures.
-pub(super) fn shared_of(
-    nodes: &Nodes,
-    faces: Faces<'_>,
-    points: &Measured,
-    results: &[SiteResult],
-) -> Vec<SharedSite> {
+pub(super) fn shared_of(nodes: &Nodes, faces: Faces<'_>, points: &Measured, results: &[SiteResult]) -> Vec<SharedSite> {
     let given = &points.cover.given;
     if given.is_empty() {
         return Vec::new();

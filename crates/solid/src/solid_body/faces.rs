@@ -233,9 +233,9 @@ impl<const D: usize> Faces<D> {
     pub fn normal_field(&self, face: u32, s: &Local, at_vertices: &[Direction]) -> NormalField {
         let shape = self.face(face).shape;
         let mut out = NormalField::default();
-        for (k, (corner, direction)) in shape.vertices().iter().zip(at_vertices).enumerate() {
+        for (k, direction) in at_vertices.iter().enumerate() {
             let value = shape.vertex_function(k, s);
-            let slopes = vertex_slopes(shape, corner, s);
+            let slopes = shape.vertex_slopes(k, s);
             out.vector += direction.vector * value;
             (0..2).for_each(|a| out.slopes[a] += direction.vector * slopes[a]);
             out.functions.extend(direction.functions.iter().map(|f| Function {
@@ -453,17 +453,6 @@ pub(super) fn merge(functions: &mut Vec<Function>) {
         }
         same
     });
-}
-
-/// The derivatives of the function of a vertex of a face with straight edges.
-fn vertex_slopes(shape: CellShape, corner: &Local, s: &Local) -> [f64; 2] {
-    let (a, b) = (corner[0], corner[1]);
-    match shape {
-        CellShape::Triangle if a + b == 0.0 => [-1.0, -1.0],
-        CellShape::Triangle => [a, b],
-        CellShape::Line => [0.5 * a, 0.0],
-        _ => [0.25 * a * (1.0 + b * s[1]), 0.25 * b * (1.0 + a * s[0])],
-    }
 }
 
 impl<const D: usize> Face<D> {

@@ -11,14 +11,15 @@ use signorini_mechanics::pair::axis;
 use signorini_mechanics::surface::Faces as AnyFaces;
 use signorini_mechanics::{Direction, Function, Placed};
 use std::any::Any;
+use std::sync::OnceLock;
 
 /// A surface where it is now.
 pub(super) struct PlacedSurface<'a, const D: usize> {
     faces: &'a Faces<D>,
     surface: &'a Surface<D>,
     u: &'a [f64],
-    /// The averaged normal at the corners of each face.
-    corners: Vec<Vec<Direction>>,
+    /// The averaged normal at the corners of each face, once it is asked for.
+    corners: OnceLock<Vec<Vec<Direction>>>,
     youngs_modulus: f64,
     degree: f64,
 }
@@ -27,13 +28,12 @@ impl<const D: usize> SolidBody<D> {
     /// The surface of a group that has sides.
     pub(super) fn placed_surface<'a>(&'a self, group: &str, u: &'a [f64]) -> PlacedSurface<'a, D> {
         let surface = self.faces.surface(group);
-        let corners = |of: &Vec<_>| of.iter().map(|normal: &Vec<_>| Faces::<D>::direction(normal, u)).collect();
         let body = self.body();
         PlacedSurface {
             faces: &self.faces,
             surface,
             u,
-            corners: self.faces.vertex_normals(surface).par_iter().map(corners).collect(),
+            corners: OnceLock::new(),
             youngs_modulus: body.material.youngs_modulus,
             degree: body.degree as f64,
         }
@@ -52,7 +52,9 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
     }
 
     fn corners(&self, face: usize) -> &[Direction] {
-        &self.corners[face]
+        let of = |list: &Vec<_>| list.iter().map(|normal: &Vec<_>| Faces::<D>::direction(normal, self.u)).collect();
+        let all = || self.faces.vertex_normals(self.surface).par_iter().map(of).collect();
+        &self.corners.get_or_init(all)[face]
     }
 
     fn placed(&self, face: usize, s: &Local) -> Placed {

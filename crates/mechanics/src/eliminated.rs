@@ -68,6 +68,7 @@ pub(crate) fn eliminated_step(
             (false, false) => {}
         }
     }
+    (0..count as u32).filter(|k| held[*k as usize]).for_each(|k| of_bodies.add(k, k, 1.0));
     let mut stiffness = of_bodies.matrix(count).symmetric_part();
     drop(of_bodies);
     if let Some(constant) = constant {

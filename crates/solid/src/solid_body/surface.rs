@@ -6,7 +6,6 @@ use super::master::functions;
 use super::spatial;
 use crate::body::BodySurface;
 use rayon::prelude::*;
-use signorini_contact::obstacle::strip;
 use signorini_fem::Local;
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
 use signorini_geometry::{Matrix, Vector};
@@ -105,7 +104,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
         let [u, v] = at.tangents.each_ref().map(spatial);
         let x = spatial(&at.x);
         let jet = if D == 2 {
-            strip(&CurveJet { x, d1: u, d2: zero, d3: zero })
+            SurfaceJet::strip(&CurveJet { x, d1: u, d2: zero, d3: zero })
         } else {
             SurfaceJet { x, u, v, uu: zero, uv: zero, vv: zero, uuu: zero, uuv: zero, uvv: zero, vvv: zero }
         };

@@ -5,7 +5,7 @@
 //! many of them, evenly spread, as its functions can follow. Only with these do conditions that are kept exactly, by
 //! multipliers or augmentation, determine the pressure: of more points than functions it ripples. A plane or axisymmetric
 //! body stands at `z = 0`. Places on sides of the box are held by equations between unknowns, places on
-//! the recovered boundary by Nitsche's method (see [`supports`](crate::supports)).
+//! the recovered boundary by Nitsche's method (`weak`).
 //!
 //! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
 //! there would have infinite energy.

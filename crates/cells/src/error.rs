@@ -3,7 +3,7 @@
 use signorini_geometry::shape::ShapeError;
 use signorini_solve::SolveError;
 
-/// A body, support, load or contact that cannot be computed, with the values and what would do.
+/// A body or a place of it that cannot be computed, with the values and what would do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CellsError {
     #[error(
@@ -71,24 +71,6 @@ pub enum CellsError {
     Voxel { voxel: Vec<usize>, value: f64 },
     #[error("{what} of shape {found:?} cannot be used: {must}")]
     Image { what: &'static str, found: Vec<usize>, must: &'static str },
-    #[error(
-        "{modes} of the rigid motions of the body are not restrained, so it has no equilibrium: add a support, or \
-         press it into contact"
-    )]
-    Unsupported { modes: usize },
-    #[error(
-        "the stiffness is not positive near {at:?}: a cell there contains so little material that it is lost in \
-         round-off beside a fictitious stiffness of {fictitious:.0e}, or a contact there softens more than the body \
-         resists. Use a larger fictitious stiffness, a lower degree or larger cells; with contact a smaller step"
-    )]
-    NotPositive { at: Vec<f64>, fictitious: f64 },
-    #[error("the contact did not converge in {iterations} iterations: the residual is {residual:.1e} of the forces")]
-    NotConverged { iterations: usize, residual: f64 },
-    #[error(
-        "conjugate gradients reached only a residual of {residual:.1e} in {iterations} iterations; use a direct \
-         solver or a larger fictitious stiffness"
-    )]
-    Iterations { iterations: usize, residual: f64 },
     #[error(
         "the case has no box of cells, and this geometry has no bounds of its own: give the corners of a box around \
          it"

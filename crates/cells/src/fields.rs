@@ -83,14 +83,6 @@ impl<const D: usize> CellBody<D> {
         Some(out)
     }
 
-    /// The state at a point of the material; none outside.
-    pub fn probe(&self, x: &Point<D>, u: &[f64]) -> Option<PointState<D>> {
-        if !self.region.contains(x) {
-            return None;
-        }
-        self.cell_at(x).map(|cell| self.state_at(cell, x, u))
-    }
-
     /// Displacement and stress in the middle of equal boxes that fill the box of the cells, as many along each cell of the
     /// grid as the degree; zero where there is no material. The stress of a cell with little material is that of its
     /// neighbour.

@@ -11,17 +11,15 @@
 //! - [`components`]: what of the material hangs together.
 //! - [`moments`]: few points for many; `tensor_integrals`: sums over them, direction by direction.
 //! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
-//! - [`supports`], [`loads`]: what holds and what pushes; [`system`]: equilibrium; [`schwarz`]: the preconditioner.
-//! - [`cell_solid`]: the body in a system of bodies of any kind.
+//! - [`cell_solid`]: the body in a system of bodies of any kind, with its supports, loads and contact; `nitsche`: how its
+//!   recovered boundary is held; [`schwarz`]: the preconditioner.
 //! - [`description`]: the same from plain data, of any dimension.
-//! - [`contact`]: contact of the recovered boundary with a rigid body.
 //! - [`disc_contact`]: contact by discs, between bodies of a system or within one; `spread`: points for them.
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
 pub mod cell_solid;
 pub mod components;
-pub mod contact;
 pub mod description;
 pub mod disc_contact;
 pub mod discretisation;
@@ -32,9 +30,9 @@ mod hierarchy;
 pub mod image;
 pub mod jets;
 pub mod legendre;
-pub mod loads;
 mod memory;
 pub mod moments;
+mod nitsche;
 mod numbering;
 pub mod place;
 pub mod region;
@@ -43,8 +41,6 @@ pub mod shapes;
 pub mod space;
 mod spread;
 pub mod stiffness;
-pub mod supports;
-pub mod system;
 mod tensor_integrals;
 pub mod tree;
 pub mod voxels;
@@ -54,15 +50,12 @@ pub use cell_solid::CellSolid;
 pub use components::Pieces;
 pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
 pub use error::CellsError;
-pub use loads::Load;
 pub use moments::VolumePoints;
 pub use place::Place;
 pub use region::{BoundaryPoint, Filling, Integration, Region};
 pub use signorini_fem::cut::End;
 pub use signorini_fem::elastic::{Elastic, Space, von_mises};
 pub use space::{Products, Tabulation};
-pub use supports::{Held, Support};
-pub use system::{Solution, Solved, Solver, System};
 pub use tree::{CellTree, Leaf};
 
 /// Where a body has material: shapes, their unions, intersections and complements.

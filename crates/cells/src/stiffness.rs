@@ -163,7 +163,7 @@ impl<const D: usize> CellBody<D> {
     }
 
     /// Whether the stiffness of a full cell does not depend on where it lies.
-    pub fn is_homogeneous(&self) -> bool {
+    fn is_homogeneous(&self) -> bool {
         self.stuff.modulus.is_none() && self.stuff.space != Space::Axisymmetric
     }
 

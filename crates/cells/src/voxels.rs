@@ -115,49 +115,6 @@ impl<const D: usize> Voxels<D> {
             .map_err(|_| CellsError::Threshold { threshold, least, most })?;
         Ok(Arc::new(spline))
     }
-
-    /// Voxels above a threshold that hang together by their sides with the largest such set keep their value, all others
-    /// above it are set to `below`; gives the share of voxels above the threshold that were dropped, and of how many sets.
-    pub fn keep_largest(&mut self, threshold: f64, below: f64) -> (f64, usize) {
-        let total = self.values.len();
-        let mut label = vec![usize::MAX; total];
-        let mut sizes = Vec::new();
-        for start in 0..total {
-            if self.values[start] <= threshold || label[start] != usize::MAX {
-                continue;
-            }
-            let number = sizes.len();
-            let (mut size, mut stack) = (0, vec![start]);
-            label[start] = number;
-            while let Some(i) = stack.pop() {
-                size += 1;
-                let mut stride = 1;
-                for k in 0..D {
-                    let at = i / stride % self.count[k];
-                    let low = (at > 0).then(|| i - stride);
-                    let high = (at + 1 < self.count[k]).then(|| i + stride);
-                    for j in [low, high].into_iter().flatten() {
-                        if self.values[j] > threshold && label[j] == usize::MAX {
-                            label[j] = number;
-                            stack.push(j);
-                        }
-                    }
-                    stride *= self.count[k];
-                }
-            }
-            sizes.push(size);
-        }
-        let all: usize = sizes.iter().sum();
-        let Some(best) = (0..sizes.len()).max_by(|a, b| sizes[*a].cmp(&sizes[*b]).then(b.cmp(a))) else {
-            return (0.0, 0);
-        };
-        for (value, label) in self.values.iter_mut().zip(&label) {
-            if *label != usize::MAX && *label != best {
-                *value = below;
-            }
-        }
-        ((all - sizes[best]) as f64 / all as f64, sizes.len() - 1)
-    }
 }
 
 /// A body of voxels with a modulus each, in which voxels without one are empty. Each voxel is integrated exactly.

@@ -1,12 +1,10 @@
-//! Contact of surfaces, for any discretisation: pairs, pressures, laws of friction.
+//! Contact of surfaces, for any discretisation: what of them faces each other, pressures, laws of friction.
 //!
 //! Contact sees faces with positions and the functions that move them ([`surface`]); it does not know meshes.
 //!
 //! - [`multiplier`]: the nodes of the contact pressure and the normal field.
-//! - [`mod@segments`]: where two surfaces, or a surface and a rigid body, face each other.
-//! - [`mortar`]: weighted gaps with dual functions.
-//! - [`kinematics`]: the gap of a pair with its variations, for any shape functions.
-//! - [`obstacle`]: the closest point of a slave point, on faces, edges and vertices, or on a rigid body.
+//! - [`mod@segments`]: where two surfaces face each other.
+//! - [`mortar`]: dual functions of the pressure.
 //! - [`mod@law`] of friction.
 //! - [`recovery`]: the pressure as it is shown; [`mod@zone`]: where the zone of contact ends.
 //!
@@ -14,11 +12,9 @@
 //! pressure is positive.
 
 mod face_maps;
-pub mod kinematics;
 pub mod law;
 pub mod mortar;
 pub mod multiplier;
-pub mod obstacle;
 pub mod recovery;
 pub mod segments;
 pub mod surface;
@@ -27,13 +23,11 @@ mod testing;
 pub mod zone;
 
 pub use face_maps::FaceMaps;
-pub use kinematics::{Kinematics, Partner, ShapeFunction};
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
-pub use mortar::{Shares, WeightedGap, compress, shares, shares_on_the_way, weighted_gaps, weightless};
+pub use mortar::{Shares, compress, shares, shares_on_the_way, weightless};
 pub use multiplier::{Given, PressureNodes};
-pub use obstacle::{Faces, Obstacle, Rigid};
 pub use recovery::{Pressed, recovered, unpressed};
-pub use segments::{GapPoint, pieces, rigid_points, segments};
+pub use segments::{GapPoint, pieces, segments, whole_faces};
 pub use signorini_geometry::rigid_shape::GapJet;
-pub use surface::{ContactSurface, FacePoint, Moved, looks_at};
+pub use surface::{ContactSurface, FacePoint, Moved, ShapeFunction, looks_at};
 pub use zone::{ContactZone, NodeState, connected, zone};

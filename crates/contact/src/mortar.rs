@@ -1,4 +1,4 @@
-//! Weighted gaps: the gap of two surfaces tested with the dual functions of the pressure nodes.
+//! Dual functions of the pressure nodes, with which the gap of two surfaces is tested.
 //!
 //! `p_h = Σ λ_k ψ_k` with `ψ = D M⁻¹ N` on each slave face, `M = ∫ N Nᵀ`, `D = diag ∫ N` over its covered part, `N` the
 //! Lagrange functions on the Gauss-Lobatto nodes (Wohlmuth 2000). Then `∫ ψ_k N_l = δ_kl D_k`: the pressure at a node is
@@ -16,31 +16,6 @@ use signorini_basis::hierarchic::Values;
 use signorini_basis::rules::rule;
 use signorini_geometry::Point;
 
-/// The weighted gap of one pressure node, linear in the displacement: `∫ ψ_k g = gap + Σ coefficient · unknown ≥ 0`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WeightedGap {
-    pub gap: f64,
-    /// `∫ ψ_k` over the covered part.
-    pub weight: f64,
-    pub terms: Vec<(u32, f64)>,
-    /// Forces under a unit pressure where they are others than `terms`; else empty.
-    pub forces: Vec<(u32, f64)>,
-    /// Node of [`PressureNodes`].
-    pub node: u32,
-}
-
-impl WeightedGap {
-    /// The weighted gap at a displacement.
-    pub fn at(&self, u: &[f64]) -> f64 {
-        self.gap + self.terms.iter().map(|(unknown, c)| c * u[*unknown as usize]).sum::<f64>()
-    }
-
-    /// The forces under a unit pressure.
-    pub fn push(&self) -> &[(u32, f64)] {
-        if self.forces.is_empty() { &self.terms } else { &self.forces }
-    }
-}
-
 /// Faces covered less than this keep the plain Lagrange functions; nodes covered less give theirs away.
 const WEAK: f64 = 0.25;
 /// Share of the area of its faces, per node, below which a node has no weight.
@@ -48,7 +23,7 @@ const WEIGHTLESS: f64 = 1e-6;
 /// Share of a mid-edge function of a quadratic triangle that goes to each corner.
 const SHARE: f64 = 0.2;
 
-/// How much every point counts in the weighted gap of which pressure node.
+/// How much every point counts for which pressure node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shares {
     /// For every point of every face: nodes, and value of the dual function times the weight of the point.
@@ -200,66 +175,6 @@ fn without_integral<const D: usize>(
     whole.iter().zip(&share_of_area).map(|(w, a)| *w < WEIGHTLESS * a).collect()
 }
 
-/// The weighted gaps of all pressure nodes that the points cover, at rest.
-pub fn weighted_gaps<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: Option<&dyn ContactSurface<D>>,
-    points: &[Vec<GapPoint<D>>],
-    shares: &Shares,
-) -> Vec<WeightedGap> {
-    let mut rows = weighted(slave, master, points, shares, &|_, _, p, _| (p.gap, p.direction));
-    rows.retain(|row| row.weight > 0.0 && !row.terms.is_empty());
-    rows
-}
-
-/// What of the way between the sides counts at a point of a face for a node, by its value at rest and its direction.
-pub(crate) type Component<'a, const D: usize> = &'a dyn Fn(usize, usize, &GapPoint<D>, u32) -> (f64, Point<D>);
-
-/// A component of the way from the master to the slave in the mean, for every pressure node.
-pub(crate) fn weighted<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: Option<&dyn ContactSurface<D>>,
-    points: &[Vec<GapPoint<D>>],
-    shares: &Shares,
-    component: Component<'_, D>,
-) -> Vec<WeightedGap> {
-    let mut rows: Vec<WeightedGap> = (0u32..)
-        .zip(&shares.weight)
-        .map(|(node, weight)| WeightedGap { gap: 0.0, weight: *weight, terms: Vec::new(), forces: Vec::new(), node })
-        .collect();
-    let mut trace = Vec::new();
-    for (face, list) in points.iter().enumerate() {
-        let mut touched: Vec<u32> = Vec::new();
-        for (q, (p, of_point)) in list.iter().zip(&shares.of_point[face]).enumerate() {
-            trace.clear();
-            slave.trace(face, &p.s, &mut trace);
-            let of_slave = trace.len();
-            if let (Some((other, eta)), Some(master)) = (&p.master, master) {
-                master.trace(*other as usize, eta, &mut trace);
-            }
-            for (node, share) in of_point {
-                let row = &mut rows[*node as usize];
-                let (value, direction) = component(face, q, p, *node);
-                row.gap += share * value;
-                touched.push(*node);
-                for (m, (unknown, value)) in trace.iter().enumerate() {
-                    let sign = if m < of_slave { *share } else { -share };
-                    for i in 0..D {
-                        if direction[i] != 0.0 {
-                            row.terms.push((unknown + i as u32, sign * value * direction[i]));
-                        }
-                    }
-                }
-            }
-        }
-        // Entries of one face are added up at once, so that lists stay short.
-        touched.sort_unstable();
-        touched.dedup();
-        touched.into_iter().for_each(|node| compress(&mut rows[node as usize].terms));
-    }
-    rows
-}
-
 /// Adds up entries of the same unknown.
 pub fn compress(list: &mut Vec<(u32, f64)>) {
     list.sort_by_key(|e| e.0);
@@ -359,20 +274,12 @@ mod tests {
     use crate::segments::segments;
     use crate::testing::Polyline;
 
-    type Sides = (Polyline, Polyline, PressureNodes<2>, Vec<Vec<GapPoint<2>>>);
-
-    /// A slave from 0 to 2, `rise x` above a longer master; the unknowns of the master follow those of the slave.
-    fn sides(rise: f64) -> Sides {
-        let slave = Polyline::at(&[0.0, 0.6, 1.3, 2.0], |x| 0.1 + rise * x);
+    #[test]
+    fn dual_functions_sum_to_one_and_each_meets_its_own_function_alone() {
+        let slave = Polyline::at(&[0.0, 0.6, 1.3, 2.0], |x| 0.1 + 0.05 * x);
         let master = Polyline::at(&[3.0, 1.7, 0.9, -1.0], |_| 0.0);
         let nodes = PressureNodes::new(&slave);
         let points = segments(&slave, &master, &nodes, 1.0, &|_, _| true);
-        (slave, master, nodes, points)
-    }
-
-    #[test]
-    fn dual_functions_sum_to_one_and_each_meets_its_own_function_alone() {
-        let (slave, _, nodes, points) = sides(0.05);
         let shares = shares(&slave, &nodes, &points, &|_| false);
         let mut products = DMatrix::<f64>::zeros(nodes.len(), nodes.len());
         for (face, list) in points.iter().enumerate() {
@@ -393,69 +300,5 @@ mod tests {
             }
         }
         assert!((shares.weight.iter().sum::<f64>() - 2.0 * 0.05f64.hypot(1.0)).abs() < 1e-13);
-    }
-
-    #[test]
-    fn weighted_gaps_are_the_gap_and_pushes_are_balanced() {
-        let (slave, master, nodes, points) = sides(0.0);
-        let shares = shares(&slave, &nodes, &points, &|_| false);
-        // Apart from those of the slave the unknowns of the master come later.
-        struct Later<'a>(&'a Polyline);
-        impl ContactSurface<2> for Later<'_> {
-            fn face_count(&self) -> usize {
-                self.0.face_count()
-            }
-            fn shape(&self, face: usize) -> CellShape {
-                self.0.shape(face)
-            }
-            fn degree(&self, face: usize) -> usize {
-                self.0.degree(face)
-            }
-            fn order(&self, face: usize) -> usize {
-                self.0.order(face)
-            }
-            fn at(&self, face: usize, s: &signorini_basis::Local) -> crate::FacePoint<2> {
-                self.0.at(face, s)
-            }
-            fn trace(&self, face: usize, s: &signorini_basis::Local, out: &mut Vec<(u32, f64)>) {
-                let before = out.len();
-                self.0.trace(face, s, out);
-                out[before..].iter_mut().for_each(|e| e.0 += 8);
-            }
-            fn functions(&self, face: usize, s: &signorini_basis::Local) -> Vec<crate::ShapeFunction> {
-                self.0
-                    .functions(face, s)
-                    .into_iter()
-                    .map(|f| crate::ShapeFunction { unknown: f.unknown + 8, ..f })
-                    .collect()
-            }
-            fn vertices(&self, face: usize) -> Vec<u32> {
-                self.0.vertices(face)
-            }
-            fn measure(&self, x: &Point<2>) -> f64 {
-                self.0.measure(x)
-            }
-            fn describe(&self, face: usize) -> String {
-                self.0.describe(face)
-            }
-        }
-        let rows = weighted_gaps(&slave, Some(&Later(&master)), &points, &shares);
-        assert_eq!(rows.len(), nodes.len());
-        for row in &rows {
-            assert!((row.gap - 0.1 * row.weight).abs() < 1e-15);
-            // Lifting the slave by one opens by one, lifting the master closes by one, and no pressure acts along x.
-            let lifted = |from: u32, to: u32, axis: u32| {
-                let moved = row.terms.iter().filter(|(u, _)| (from..to).contains(u) && u % 2 == axis);
-                moved.map(|(_, c)| c).sum::<f64>() / row.weight
-            };
-            assert!((lifted(0, 8, 1) - 1.0).abs() < 1e-14 && (lifted(8, 16, 1) + 1.0).abs() < 1e-14);
-            assert!(row.terms.iter().all(|(u, c)| u % 2 == 1 || c.abs() < 1e-15));
-            // Neither has the pressure a moment: the place at which it pushes the slave is that at which it pushes the master.
-            let moment = row.terms.iter().filter(|(u, _)| u % 2 == 1).map(|(u, c)| {
-                let at = |line: &Polyline, k: u32| line.0[k as usize / 2][0];
-                c * if *u < 8 { at(&slave, *u) } else { at(&master, *u - 8) }
-            });
-            assert!(moment.sum::<f64>().abs() < 1e-14);
-        }
     }
 }

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use signorini_basis::rules::rule;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
-use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::{Aabb, Point};
 use space::polygons;
+
 /// The points of every slave face that see a master face no farther away than `reach`; `sees` tells which slave face may touch
 /// which master face.
 pub fn segments<const D: usize>(
@@ -136,25 +136,18 @@ fn defects<const D: usize>(
     std::array::from_fn(|side| sums[side].iter().zip(&exact[side]).map(|(s, e)| worst(s, e)).collect())
 }
 
-/// The points of every slave face against a rigid body.
-pub fn rigid_points<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    gap: &dyn Fn(&Point<D>) -> GapJet<D>,
-) -> Vec<Vec<GapPoint<D>>> {
-    (0..slave.face_count())
-        .map(|face| {
-            let n = slave.degree(face) + 2 + usize::from(slave.shape(face) == CellShape::Triangle);
-            rule(slave.shape(face), n)
-                .into_iter()
-                .map(|(s, w)| {
-                    let at = slave.at(face, &s);
-                    let GapJet { gap, normal, .. } = gap(&at.x);
-                    let weight = w * at.area_normal().norm() * slave.measure(&at.x);
-                    GapPoint { s, weight, master: None, direction: normal, gap }
-                })
-                .collect()
-        })
-        .collect()
+/// The points of every slave face as a whole, wherever a rigid body is that it may touch.
+pub fn whole_faces<const D: usize>(slave: &dyn ContactSurface<D>) -> Vec<Vec<GapPoint<D>>> {
+    let of_face = |face: usize| {
+        let n = slave.degree(face) + 2 + usize::from(slave.shape(face) == CellShape::Triangle);
+        let point = |(s, w): (Local, f64)| {
+            let at = slave.at(face, &s);
+            let weight = w * at.area_normal().norm() * slave.measure(&at.x);
+            GapPoint { s, weight, master: None, direction: Point::<D>::zeros(), gap: 0.0 }
+        };
+        rule(slave.shape(face), n).into_iter().map(point).collect()
+    };
+    (0..slave.face_count()).map(of_face).collect()
 }
 
 /// Master faces that each slave face may see, by boxes swept along the normals.

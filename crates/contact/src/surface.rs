@@ -1,9 +1,17 @@
 //! What contact sees of a discretised body: faces with positions, and the functions that move them.
 
 use crate::face_maps::FaceMaps;
-use crate::kinematics::ShapeFunction;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
+
+/// A function that moves a point of a face: the first of its unknowns, its value and its slopes along the coordinates of the
+/// face (those beyond the number of its coordinates are not read).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeFunction {
+    pub unknown: u32,
+    pub value: f64,
+    pub slopes: [f64; 2],
+}
 
 /// A point of a face.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,6 @@
 //! A polyline as a surface of the plane, for unit tests.
 
-use crate::kinematics::ShapeFunction;
-use crate::surface::{ContactSurface, FacePoint};
+use crate::surface::{ContactSurface, FacePoint, ShapeFunction};
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
 

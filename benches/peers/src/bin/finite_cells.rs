@@ -8,6 +8,7 @@ use nalgebra::Matrix2;
 use signorini_cells::shapes::ball;
 use signorini_cells::*;
 use signorini_geometry::{Aabb, Point, Vector};
+use signorini_mechanics::{Part, PlacedLoad, Support, System, TimedLoad};
 use std::process::Command;
 use std::sync::Arc;
 
@@ -66,12 +67,16 @@ type Cells = (usize, usize, Products);
 fn measured<const D: usize>(
     (n, degree, products): Cells,
     body: impl Fn() -> CellBody<D>,
-    energy: impl Fn(&mut System<'_, D>) -> f64,
+    state: impl Fn(&mut System),
 ) -> Ours {
     let (seconds, (energy, unknowns)) = timed(|| {
         let body = body();
-        let mut system = System::new(&body);
-        (energy(&mut system), body.unknowns())
+        let unknowns = body.unknowns();
+        let sides = (0..D).flat_map(|axis| End::BOTH.map(|end| (side(axis, end), Place::Side { axis, end })));
+        let body = CellSolid::new("cells", body, &sides.collect()).expect("sides");
+        let mut system = System { bodies: vec![Box::new(body)], ..System::default() };
+        state(&mut system);
+        (energy(&mut system), unknowns)
     });
     let (integration, points) = timed(|| {
         let body = body();
@@ -83,26 +88,44 @@ fn measured<const D: usize>(
     Ours { n, degree, products, unknowns, energy, seconds, integration, points }
 }
 
-fn held(system: &mut System<'_, 2>) {
-    for axis in 0..2 {
-        system.support(&Support::symmetric(Place::low(axis))).expect("a side");
-    }
+fn side(axis: usize, end: End) -> String {
+    format!("{end:?} {axis}")
+}
+
+fn on(axis: usize, end: End) -> Part {
+    Part { body: 0, group: Some(side(axis, end)) }
+}
+
+/// Holds the displacement across a side of the box.
+fn hold(system: &mut System, axis: usize, end: End, value: f64) {
+    let mut support = Support { part: on(axis, end), ..Support::default() };
+    support.displacement[axis] = Some(Arc::new(move |_, _| value));
+    system.supports.push(support);
+}
+
+fn pull(system: &mut System, axis: usize, traction: impl Fn(&Point<3>) -> Vector<3> + Send + Sync + 'static) {
+    let load = TimedLoad::Traction(Arc::new(move |x, _| traction(x)));
+    system.loads.push(PlacedLoad { name: "traction".into(), part: on(axis, End::High), load });
+}
+
+/// The strain energy of the solution.
+fn energy(system: &mut System) -> f64 {
+    system.prepare().expect("a system");
+    let start = system.start();
+    system.solve(&start, 1.0, &mut |_, _| true).expect("a solution").1.energy
 }
 
 fn plate(cells: Cells) -> Ours {
     let body = || block(4.0, 1.0, cells, stuff::<2>(Space::PlaneStress, 206_900.0, 0.29));
     measured(cells, body, |system| {
-        held(system);
-        let value = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, 100.0));
-        system.load(&Load::Traction { on: Place::high(1), value }).expect("a side");
-        let u = system.solve(Solver::Direct).expect("a solution").displacement;
-        0.5 * system.work(&u)
+        (0..2).for_each(|axis| hold(system, axis, End::Low, 0.0));
+        pull(system, 1, |_| Vector::<3>::new(0.0, 100.0, 0.0));
     })
 }
 
 /// Stress about a hole of radius 1 under `σ_xx = 1` (Kirsch 1898).
-fn stress(x: &Point<2>) -> Matrix2<f64> {
-    let (r2, a) = (1.0 / x.norm_squared(), x[1].atan2(x[0]));
+fn stress(x: &Point<3>) -> Matrix2<f64> {
+    let (r2, a) = (1.0 / x.xy().norm_squared(), x[1].atan2(x[0]));
     let r4 = r2 * r2;
     let radial = 0.5 * (1.0 - r2) + 0.5 * (1.0 - 4.0 * r2 + 3.0 * r4) * (2.0 * a).cos();
     let hoop = 0.5 * (1.0 + r2) - 0.5 * (1.0 + 3.0 * r4) * (2.0 * a).cos();
@@ -114,26 +137,21 @@ fn stress(x: &Point<2>) -> Matrix2<f64> {
 fn kirsch(cells: Cells) -> Ours {
     let body = || block(4.0, 1.0, cells, stuff::<2>(Space::PlaneStrain, 1.0, 0.3));
     measured(cells, body, |system| {
-        held(system);
         for axis in 0..2 {
-            let normal = Vector::<2>::from_fn(|k, _| f64::from(u8::from(k == axis)));
-            let value = Arc::new(move |x: &Point<2>| stress(x) * normal);
-            system.load(&Load::Traction { on: Place::high(axis), value }).expect("a side");
+            hold(system, axis, End::Low, 0.0);
+            pull(system, axis, move |x| {
+                let traction = stress(x).column(axis).into_owned();
+                Vector::<3>::new(traction[0], traction[1], 0.0)
+            });
         }
-        let u = system.solve(Solver::Direct).expect("a solution").displacement;
-        0.5 * system.work(&u)
     })
 }
 
 fn cavity(cells: Cells) -> Ours {
     let body = || block(1.0, 0.6, cells, stuff::<3>(Space::Solid, 1.0, 0.3));
     measured(cells, body, |system| {
-        for axis in 0..3 {
-            system.support(&Support::symmetric(Place::low(axis))).expect("a side");
-        }
-        system.support(&Support::component(Place::high(2), 2, 1e-3)).expect("a side");
-        let u = system.solve(Solver::Automatic).expect("a solution").displacement;
-        system.energy(&u)
+        (0..3).for_each(|axis| hold(system, axis, End::Low, 0.0));
+        hold(system, 2, End::High, 1e-3);
     })
 }
 

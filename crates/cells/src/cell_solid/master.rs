@@ -15,7 +15,6 @@ use super::{CellSolid, normal_now};
 use crate::jets::FunctionJet;
 use crate::shapes::{HalfSpace, spatial};
 use rayon::prelude::*;
-use signorini_contact::obstacle::strip;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
@@ -166,7 +165,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         );
         let curve = CurveJet { x: spatial(&at.now()), d1: y1, d2: y11, d3: y3[0] };
         let jet = if D == 2 {
-            strip(&curve)
+            SurfaceJet::strip(&curve)
         } else {
             SurfaceJet {
                 x: curve.x,

@@ -2,13 +2,13 @@
 //!
 //! `-∫ (d·t(u)) (d·v) - ∫ (d·t(v)) (d·u - ū) + ∫ γ (d·u - ū) (d·v)`,
 //!
-//! `γ` as in [`supports`](crate::supports). With a unit translation for `v` its stress vanishes, and the terms are minus the
+//! `γ` as in `nitsche`. With a unit translation for `v` its stress vanishes, and the terms are minus the
 //! force of the support: `∫ d·t(u) - γ (d·u - ū)`.
 
 use super::CellSolid;
 use crate::body::Site;
+use crate::nitsche::{NitschePart, RowSpace, Rows};
 use crate::shapes::spatial;
-use crate::supports::{RowSpace, Rows};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use signorini_geometry::Vector;
@@ -32,7 +32,7 @@ pub(super) struct WeakHold<const D: usize> {
 impl<const D: usize> WeakHold<D> {
     pub fn new(solid: &CellSolid<D>, sites: &[Site<D>]) -> Self {
         let parts = solid.body.nitsche_parts(sites, &solid.stiffness);
-        let group = |part: crate::supports::NitschePart<D>| Group {
+        let group = |part: NitschePart<D>| Group {
             rows: RowSpace::new(&solid.body, part.cell, part.stress_cell),
             sites: part.sites,
             gamma: part.gamma,

@@ -266,16 +266,6 @@ pub fn read_with(
     }
 }
 
-/// Reads numbers without a header.
-///
-/// # Errors
-/// A file that cannot be read or is too short.
-pub fn read_raw(path: &Path, header: &raw::RawHeader) -> Result<ImageData, ImageError> {
-    let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| ImageError::File { file: file.clone(), message: e.to_string() })?;
-    raw::parse(&bytes, header).map_err(|wrong| ImageError::Content { file, wrong })
-}
-
 /// The first bytes of what is packed by gzip or zlib, at most so many.
 ///
 /// # Errors

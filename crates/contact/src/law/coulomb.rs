@@ -34,7 +34,7 @@ impl Coulomb {
         self.mu
     }
 
-    pub fn is_isotropic(&self) -> bool {
+    fn is_isotropic(&self) -> bool {
         self.mu[0] == self.mu[1]
     }
 }

@@ -12,9 +12,9 @@ pub struct GapPoint<const D: usize> {
     pub s: Local,
     /// Area that the point stands for.
     pub weight: f64,
-    /// Face and point of the master; `None` for a rigid one.
+    /// Face and point of the master; none of a rigid one.
     pub master: Option<(u32, Local)>,
-    /// How the gap grows with the displacement of the slave point; that of the master point counts opposite.
+    /// The way from the master to the slave, of unit length; zero of a rigid one, as is the gap.
     pub direction: Point<D>,
     pub gap: f64,
 }

@@ -5,7 +5,7 @@ mod elementary;
 mod grid;
 mod spline;
 
-use super::curve::wrap;
+use super::curve::{CurveJet, wrap};
 use super::error::Axes;
 use crate::patch::{Atlas, Border, Chart, Jet3, ParameterMap, Piece, Side, SurfaceChart};
 use crate::scale::{direction, same_direction};
@@ -24,6 +24,25 @@ pub struct SurfaceJet {
     pub uuv: Vector<3>,
     pub uvv: Vector<3>,
     pub vvv: Vector<3>,
+}
+
+impl SurfaceJet {
+    /// A curve in the plane as a strip along z, as wide as the curve is fast.
+    pub fn strip(curve: &CurveJet) -> Self {
+        let zero = Vector::<3>::zeros();
+        SurfaceJet {
+            x: curve.x,
+            u: curve.d1,
+            v: Vector::<3>::z() * curve.d1.norm(),
+            uu: curve.d2,
+            uuu: curve.d3,
+            uv: zero,
+            vv: zero,
+            uuv: zero,
+            uvv: zero,
+            vvv: zero,
+        }
+    }
 }
 
 /// What closed forms need to know of a surface.

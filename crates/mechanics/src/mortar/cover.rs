@@ -8,8 +8,7 @@ use super::facing::Facing;
 use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapJet, GapPoint, Given, Moved, PressureNodes, pieces, rigid_points, segments, shares,
-    shares_on_the_way,
+    ContactSurface, GapPoint, Given, Moved, PressureNodes, pieces, segments, shares, shares_on_the_way, whole_faces,
 };
 use signorini_geometry::{Point, Vector};
 
@@ -136,8 +135,7 @@ fn whole<const D: usize>(
     facing: &Facing,
     folded: &[bool],
 ) -> Cover {
-    let nowhere = |_: &Point<D>| GapJet::flat(0.0, Point::<D>::zeros());
-    let mut points = rigid_points(faces, &nowhere);
+    let mut points = whole_faces(faces);
     points.iter_mut().enumerate().filter(|(face, _)| !facing.slave(*face)).for_each(|(_, list)| list.clear());
     cover(nodes, faces, points, (folded, false))
 }

@@ -4,15 +4,15 @@
 //! across it, along which nothing changes. Contact of a surface with itself leaves out what hangs together with a site, and
 //! takes only what faces it.
 
+use super::border::Place;
 use super::faces::{Face, Faces, Surface};
 use super::{axis, spatial};
 use rayon::prelude::*;
-use signorini_contact::obstacle::{Place, strip};
 use signorini_fem::hierarchic::Derivatives;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
-use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError};
+use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 use signorini_mechanics::{Anchor, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Site};
 use std::collections::BTreeSet;
@@ -194,8 +194,8 @@ impl<const D: usize> SurfaceMaster<'_, D> {
         let zero = Vector::<3>::zeros();
         let jet = match &self.shapes[k] {
             Shape::Surface(surface) => surface.jet(s[0], s[1]),
-            Shape::Curve(curve) => strip(&curve.jet(s[0])),
-            _ => strip(&CurveJet { x: spatial(&at.x), d1: spatial(&at.tangents[0]), d2: zero, d3: zero }),
+            Shape::Curve(curve) => SurfaceJet::strip(&curve.jet(s[0])),
+            _ => SurfaceJet::strip(&CurveJet { x: spatial(&at.x), d1: spatial(&at.tangents[0]), d2: zero, d3: zero }),
         };
         let mut foot = Foot {
             point: MaterialPoint { patch: face, xi: s },

@@ -1,6 +1,7 @@
 //! An eighth of a block with a spherical cavity under tension (Southwell & Gough 1926, Goodier 1933), with the exact
 //! tractions on the far sides.
 
+use super::case::Case;
 use super::{reference, stuff};
 use nalgebra::Matrix3;
 use signorini_cells::shapes::ball;
@@ -76,15 +77,11 @@ fn block(n: usize, degree: usize, products: Products) -> CellBody<3> {
     CellBody::new(Arc::new(domain), CellTree::new(b, [n; 3]).unwrap(), setup, stuff(Space::Solid)).unwrap()
 }
 
-fn loaded(body: &CellBody<3>) -> System<'_, 3> {
-    let mut system = System::new(body);
-    for axis in 0..3 {
-        system.support(&Support::symmetric(Place::low(axis))).unwrap();
+fn loaded(body: &CellBody<3>) -> Case<3> {
+    (0..3).fold(Case::new(body).symmetric(&[0, 1, 2]), |case, axis| {
         let normal = Vector::<3>::from_fn(|k, _| f64::from(u8::from(k == axis)));
-        let value = Arc::new(move |x: &Point<3>| stress(x) * normal);
-        system.load(&Load::Traction { on: Place::high(axis), value }).unwrap();
-    }
-    system
+        case.traction(Place::high(axis), move |x| stress(x) * normal)
+    })
 }
 
 fn check(wanted: &dyn Fn(u64, u64, u64) -> bool) {
@@ -100,9 +97,7 @@ fn check(wanted: &dyn Fn(u64, u64, u64) -> bool) {
         let products = if trunk == 1 { Products::Trunk } else { Products::Tensor };
         let body = block(n as usize, p as usize, products);
         assert_eq!(body.unknowns() as u64, row["ndof"].as_u64().unwrap());
-        let system = loaded(&body);
-        let u = system.solve(Solver::Direct).unwrap().displacement;
-        let error = 1.0 - 0.5 * system.work(&u) / exact;
+        let error = 1.0 - loaded(&body).solve().unwrap().result.energy / exact;
         println!("{n} cells, degree {p}, {products:?}: {error:e} ({})", row["dU"]);
         assert!((error / row["dU"].as_f64().unwrap() - 1.0).abs() < 0.02, "{error:e}: {row}");
     }
@@ -117,7 +112,7 @@ fn energies_are_those_of_an_independent_code() {
 }
 
 #[test]
-#[ignore = "half a minute: up to 20 thousand unknowns of degree 3"]
+#[ignore = "ten seconds: up to 20 thousand unknowns of degree 3"]
 fn energies_of_finer_cells() {
     check(&|n, p, trunk| (n == 6 && p <= 3 && trunk == 0) || (n == 3 && p == 4));
 }
@@ -127,9 +122,7 @@ fn energies_of_finer_cells() {
 fn iterations_hardly_depend_on_grid_and_degree() {
     for (n, p) in [(3, 1), (3, 2), (5, 2)] {
         let body = block(n, p, Products::Tensor);
-        let system = loaded(&body);
-        let solution = system.solve(Solver::Iterative { tolerance: 1e-8 }).unwrap();
-        let Solved::Iterative { iterations, condition, .. } = solution.solved else { panic!("conjugate gradients") };
+        let (iterations, condition) = loaded(&body).iterations();
         println!("{n} cells, degree {p}: {iterations} iterations, condition {condition:.1}");
         assert!(iterations <= 40 && condition < 25.0, "{iterations} {condition}");
     }
@@ -146,14 +139,8 @@ fn iterations_do_not_depend_on_small_cuts() {
             let setup = Discretisation::of_degree(p);
             let tree = CellTree::new(b, [3; 3]).unwrap();
             let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
-            let mut system = System::new(&body);
-            system.support(&Support::clamped(Place::low(0))).unwrap();
-            let value = Arc::new(|x: &Point<3>| Vector::<3>::new(1.0, x[0], 0.5));
-            system.load(&Load::BodyForce { value }).unwrap();
-            let solution = system.solve(Solver::Iterative { tolerance: 1e-8 }).unwrap();
-            let Solved::Iterative { iterations, condition, .. } = solution.solved else {
-                panic!("conjugate gradients")
-            };
+            let case = Case::new(&body).clamped(Place::low(0));
+            let (iterations, condition) = case.body_force(|x| Vector::<3>::new(1.0, x[0], 0.5)).iterations();
             println!("cut {depth:e}, degree {p}: {iterations} iterations, condition {condition:.1}");
             assert!(iterations <= 42 && condition < 25.0, "{iterations} {condition}");
         }

@@ -1,15 +1,19 @@
-//! A disc pressed between two rigid planes: a quarter of it, with the linearised gap.
+//! A disc pressed between two rigid planes: a quarter of it. A ball: an eighth of it.
 
+use super::case::{Case, Tested};
 use super::{reference, stuff};
-use signorini_cells::contact::*;
 use signorini_cells::shapes::ball;
 use signorini_cells::*;
-use signorini_geometry::rigid_shape::GapJet;
+use signorini_geometry::rigid_shape::{Cylinder, Plane};
 use signorini_geometry::{Aabb, Point, Vector};
+use signorini_mechanics::{Enforcement, Sampling};
 use std::sync::Arc;
 
-fn floor(x: &Point<2>) -> GapJet<2> {
-    GapJet::flat(x[1], Vector::<2>::y())
+const POINTS: Sampling = Sampling::GaussPoints;
+
+/// A floor at the height of the origin.
+fn floor(up: Vector<3>) -> Plane {
+    Plane { point: Point::<3>::zeros(), normal: up }
 }
 
 struct Found {
@@ -55,32 +59,26 @@ fn press_refined(
         tree.refine(|l| *l == leaf || (l.bounds.clamp(&end) - end).norm() < 0.25 * l.size()).unwrap();
     }
     let body = CellBody::new(Arc::new(disc), tree, setup, stuff(Space::PlaneStrain)).unwrap();
-    let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::low(0))).unwrap();
-    system.support(&Support::component(Place::high(1), 1, -delta)).unwrap();
-    let contact = RigidContact {
-        obstacle: &floor,
-        on: Place::boundary(|p| p.normal[1] < -0.5),
-        kinematics: Kinematics::Linearised,
-        enforcement,
-    };
-    let found = contact.solve(&system).unwrap();
-    let force = 2.0 * found.force[1];
-    let sum = |f: &dyn Fn(&TouchingSite<2>) -> f64| found.sites.iter().map(|s| s.site.weight * f(s)).sum::<f64>();
-    let half_width = 2.0 * (sum(&|s| s.pressure * s.site.x[0].powi(2)) / sum(&|s| s.pressure)).sqrt();
+    let case = Case::new(&body).symmetric(&[0]).component(Place::high(1), 1, -delta);
+    let on = Place::boundary(|p| p.normal[1] < -0.5);
+    let found = case.touching(on, floor(Vector::<3>::y()), POINTS, enforcement).solve().unwrap();
+    let force = 2.0 * found.contact_force()[1];
+    let sites = found.tested();
+    let sum = |f: &dyn Fn(&Tested) -> f64| sites.iter().map(|s| s.weight * f(s)).sum::<f64>();
+    let half_width = 2.0 * (sum(&|s| s.pressure * s.x[0].powi(2)) / sum(&|s| s.pressure)).sqrt();
     // p² = p0² - b x² by least squares within 0.8 of the half width.
-    let inner = |s: &TouchingSite<2>| s.site.x[0] < 0.8 * half_width;
+    let inner = |s: &Tested| s.x[0] < 0.8 * half_width;
     let moment = |k: i32, p: bool| {
-        sum(&|s| if inner(s) { s.site.x[0].powi(2 * k) * if p { s.pressure.powi(2) } else { 1.0 } } else { 0.0 })
+        sum(&|s| if inner(s) { s.x[0].powi(2 * k) * if p { s.pressure.powi(2) } else { 1.0 } } else { 0.0 })
     };
     let [m0, m1, m2, q0, q1] = [moment(0, false), moment(1, false), moment(2, false), moment(0, true), moment(1, true)];
     let peak = ((q0 * m2 - q1 * m1) / (m0 * m2 - m1 * m1)).sqrt();
     let modulus = 1.0 / (1.0 - 0.09);
     let a = (4.0 * force / (std::f64::consts::PI * modulus)).sqrt();
     let p0 = 2.0 * force / (std::f64::consts::PI * a);
-    let hertz = |s: &TouchingSite<2>| p0 * (1.0 - (s.site.x[0] / a).powi(2)).max(0.0).sqrt();
+    let hertz = |s: &Tested| p0 * (1.0 - (s.x[0] / a).powi(2)).max(0.0).sqrt();
     let deviation = (sum(&|s| (s.pressure - hertz(s)).powi(2)) / sum(&|s| hertz(s).powi(2))).sqrt();
-    Found { force, half_width, peak, deviation, iterations: found.iterations }
+    Found { force, half_width, peak, deviation, iterations: found.result.iterations }
 }
 
 /// The two published discretisations, and the errors that an independent code finds with them.
@@ -96,14 +94,15 @@ fn published_discretisations() {
         (8, 5, Integration::SubCells { subdivision: 10 }, "8_5_clip"),
         (20, 2, Integration::SubCells { subdivision: 10 }, "20_2_clip"),
     ] {
-        for (enforcement, name) in [
-            (Enforcement::Nitsche { gamma: 1.0 }, "nit1"),
-            (Enforcement::Penalty { stiffness: 100.0 }, "pen100"),
-            (Enforcement::AugmentedLagrangian { stiffness: 30.0, updates: 10 }, "AL30x10"),
-        ] {
-            let found = press(n, p, 0.03, integration, enforcement);
+        for name in ["nit1", "pen100"] {
             let other = &data["fcm"][format!("{tag}_{name}")];
             let number = |key: &str| other[key].as_f64().unwrap();
+            let enforcement = match name {
+                "nit1" => Enforcement::Nitsche,
+                // A penalty is stated by the penetration that it leaves.
+                _ => Enforcement::Penalty { wanted_penetration: Some(-number("gmin")) },
+            };
+            let found = press(n, p, 0.03, integration, enforcement);
             println!(
                 "{tag} {name}: P {:.8} (other {:.8}, reference {:.8}), p0 {:.6} ({:.6}), aM {:.6} ({:.6}), L2 {:.4} ({:.4}), {} iterations",
                 found.force,
@@ -133,7 +132,7 @@ fn published_discretisations() {
 /// the largest load is 1.2e-4 off.
 #[test]
 fn published_discretisations_at_three_loads() {
-    let nitsche = Enforcement::Nitsche { gamma: 1.0 };
+    let nitsche = Enforcement::Nitsche;
     let exact = Integration::Exact { points: None };
     let data = &reference()["hertz_2d"]["0.03"];
     let mut missed = false;
@@ -160,7 +159,8 @@ fn published_discretisations_at_three_loads() {
                      {peak:.2e}, deviation {:.4}, {} iterations",
                     found.force, found.deviation, found.iterations
                 );
-                assert!(found.iterations <= 10, "{delta} {n} {levels}: {}", found.iterations);
+                let most = if levels > 0 { 13 } else { 8 };
+                assert!(found.iterations <= most, "{delta} {n} {levels}: {}", found.iterations);
                 if !is_narrow || (degree == 5 && levels > 0) {
                     let tolerance = if levels > 0 { 1e-4 } else { tolerance };
                     missed |= force.abs() > tolerance || peak.abs() > 5e-3;
@@ -175,7 +175,7 @@ fn published_discretisations_at_three_loads() {
 #[test]
 fn refinement_at_the_end_of_the_contact_zone() {
     let wanted = reference()["hertz_2d"]["0.03"]["P"]["value"].as_f64().unwrap();
-    let nitsche = Enforcement::Nitsche { gamma: 1.0 };
+    let nitsche = Enforcement::Nitsche;
     let errors: Vec<f64> = (0..=3)
         .map(|levels| {
             press_refined(8, 3, 0.03, Integration::Exact { points: None }, nitsche, levels).force / wanted - 1.0
@@ -193,21 +193,19 @@ fn newton_converges_quadratically_on_curved_bodies() {
     let slab = Domain::shape(shapes::HalfSpace { point: Point::<2>::new(0.0, 0.42), normal: Vector::<2>::y() });
     let tree = CellTree::new(b, [8, 4]).unwrap();
     let body = CellBody::new(Arc::new(slab), tree, Discretisation::of_degree(3), stuff(Space::PlaneStrain)).unwrap();
-    let mut system = System::new(&body);
-    system.support(&Support::clamped(Place::low(1))).unwrap();
-    let disc = |x: &Point<2>| GapJet::ball(x, &Point::<2>::new(0.52, 0.59), 0.2);
-    for enforcement in [Enforcement::Penalty { stiffness: 50.0 }, Enforcement::Nitsche { gamma: 1.0 }] {
-        let on = Place::boundary(|_| true);
-        let contact = RigidContact { obstacle: &disc, on, kinematics: Kinematics::Current, enforcement };
-        let found = contact.solve(&system).unwrap();
-        println!("{enforcement:?}: {:?}", found.residuals);
-        let end = &found.residuals[found.residuals.len() - 3..];
+    let disc = Cylinder { point: Point::<3>::new(0.52, 0.59, 0.0), axis: Vector::<3>::z(), radius: 0.2 };
+    for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::Nitsche] {
+        let case = Case::new(&body).clamped(Place::low(1));
+        let found = case.touching(Place::boundary(|_| true), disc, POINTS, enforcement).solve().unwrap();
+        let (residuals, force) = (found.residuals(), found.contact_force());
+        println!("{enforcement:?}: {residuals:?}");
+        let end = &residuals[residuals.len() - 4..];
         // Within the last active set: the exponent doubles until round-off.
-        assert!(end[2] < 1e-10 && end[2] < (20.0 * end[1] * end[1]).max(1e-10), "{:?}", found.residuals);
-        assert!(found.iterations <= 14 && found.force[1] < 0.0, "{:?}", found.residuals);
+        assert!(end.windows(2).all(|r| r[1] < (20.0 * r[0] * r[0]).max(1e-12)) && end[3] < 1e-10, "{residuals:?}");
+        assert!(found.result.iterations <= 14 && force[1] < 0.0, "{residuals:?}");
         // What pushes up on the disc is what the clamped side feels.
-        let reaction = system.reaction(&found.displacement, 1, End::Low, 1).unwrap();
-        assert!((reaction + found.force[1]).abs() < 1e-9 * reaction.abs().max(1e-3), "{reaction} {}", found.force);
+        let reaction = found.result.support_forces[0][0][1];
+        assert!((reaction + force[1]).abs() < 1e-9 * reaction.abs().max(1e-3), "{reaction} {force}");
     }
 }
 
@@ -218,27 +216,19 @@ fn press_ball(n: usize, degree: usize, delta: f64) -> (f64, usize, f64) {
     let domain = Domain::shape(ball(Point::<3>::z(), 1.0));
     let setup = Discretisation::of_degree(degree);
     let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
-    let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::low(0))).unwrap();
-    system.support(&Support::symmetric(Place::low(1))).unwrap();
-    system.support(&Support::component(Place::high(2), 2, -delta)).unwrap();
-    let floor = |x: &Point<3>| GapJet::flat(x[2], Vector::<3>::z());
-    let contact = RigidContact {
-        obstacle: &floor,
-        on: Place::boundary(|p| p.normal[2] < -0.8),
-        kinematics: Kinematics::Linearised,
-        enforcement: Enforcement::Nitsche { gamma: 1.0 },
-    };
-    let found = contact.solve(&system).unwrap();
+    let case = Case::new(&body).symmetric(&[0, 1]).component(Place::high(2), 2, -delta);
+    let on = Place::boundary(|p| p.normal[2] < -0.8);
+    let found = case.touching(on, floor(Vector::<3>::z()), POINTS, Enforcement::Nitsche).solve().unwrap();
+    let sites = found.tested();
     // Deviation from the distribution of Hertz of the same force and width within 0.8 of the radius.
-    let sum = |f: &dyn Fn(&TouchingSite<3>) -> f64| found.sites.iter().map(|s| s.site.weight * f(s)).sum::<f64>();
-    let radius = |s: &TouchingSite<3>| s.site.x[0].hypot(s.site.x[1]);
+    let sum = |f: &dyn Fn(&Tested) -> f64| sites.iter().map(|s| s.weight * f(s)).sum::<f64>();
+    let radius = |s: &Tested| s.x[0].hypot(s.x[1]);
     let a = (2.5 * sum(&|s| s.pressure * radius(s).powi(2)) / sum(&|s| s.pressure)).sqrt();
-    let force = 4.0 * found.force[2];
+    let force = 4.0 * found.contact_force()[2];
     let p0 = 1.5 * force / (std::f64::consts::PI * a * a);
-    let hertz = |s: &TouchingSite<3>| p0 * (1.0 - (radius(s) / a).powi(2)).max(0.0).sqrt();
+    let hertz = |s: &Tested| p0 * (1.0 - (radius(s) / a).powi(2)).max(0.0).sqrt();
     let deviation = (sum(&|s| (s.pressure - hertz(s)).powi(2)) / sum(&|s| hertz(s).powi(2))).sqrt();
-    (force, found.iterations, deviation)
+    (force, found.result.iterations, deviation)
 }
 
 #[test]
@@ -250,7 +240,7 @@ fn a_ball_between_planes() {
 }
 
 #[test]
-#[ignore = "a minute: 15 thousand unknowns factorised once in each of five iterations"]
+#[ignore = "half a minute of the processor: 15 thousand unknowns"]
 fn a_ball_between_planes_finely() {
     let wanted = reference()["hertz_3d_sphere"]["nu_0_3"]["0.06"]["P"]["value"].as_f64().unwrap();
     let (force, iterations, deviation) = press_ball(8, 3, 0.06);
@@ -260,7 +250,7 @@ fn a_ball_between_planes_finely() {
 
 /// The size at which the force is to be right within 2e-3; `CELLS` and `DEGREE` are others.
 #[test]
-#[ignore = "three minutes of the processor, 2.4 GB"]
+#[ignore = "three minutes of the processor, 1 GB"]
 fn a_ball_between_planes_very_finely() {
     let number =
         |name: &str, otherwise: usize| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise);
@@ -285,18 +275,13 @@ fn a_load_on_a_body_that_only_contact_holds() {
     let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
     let tree = CellTree::new(b, [6, 6]).unwrap();
     let body = CellBody::new(Arc::new(disc), tree, Discretisation::of_degree(4), stuff(Space::PlaneStrain)).unwrap();
-    let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::low(0))).unwrap();
-    let push = Arc::new(|_: &Point<2>| Vector::<2>::new(0.0, -0.01));
-    system.load(&Load::Traction { on: Place::high(1), value: push }).unwrap();
-    assert_eq!(system.free_motions(), 1);
-    for enforcement in [Enforcement::Nitsche { gamma: 1.0 }, Enforcement::Penalty { stiffness: 100.0 }] {
-        for kinematics in [Kinematics::Linearised, Kinematics::Current] {
-            let on = Place::boundary(|p| p.normal[1] < -0.3);
-            let contact = RigidContact { obstacle: &floor, on, kinematics, enforcement };
-            let found = contact.solve(&system).unwrap();
-            println!("{enforcement:?} {kinematics:?}: {} {:?}", found.force[1], found.residuals);
-            assert!((found.force[1] - 0.01).abs() < 1e-9, "{}", found.force);
-        }
+    let case = Case::new(&body).symmetric(&[0]).traction(Place::high(1), |_| Vector::<2>::new(0.0, -0.01));
+    assert_eq!(case.system().unheld().unwrap(), Some((0, "moving along y".into())));
+    let on = Place::boundary(|p| p.normal[1] < -0.3);
+    for enforcement in [Enforcement::Nitsche, Enforcement::Penalty { wanted_penetration: None }] {
+        let found = case.clone().touching(on.clone(), floor(Vector::<3>::y()), POINTS, enforcement).solve().unwrap();
+        let force = found.contact_force();
+        println!("{enforcement:?}: {} {:?}", force[1], found.residuals());
+        assert!((force[1] - 0.01).abs() < 1e-9, "{force}");
     }
 }

@@ -1,6 +1,7 @@
 //! Finite cells against exact solutions and independent computations.
 
 mod bodies;
+mod case;
 mod cavity;
 mod hertz;
 mod kirsch;

@@ -1,6 +1,7 @@
 //! Patch tests: a linear displacement is reproduced whatever the cut, slivers of a millionth of a cell included, to the
 //! share that the fictitious stiffness has in the equations.
 
+use super::case::Case;
 use super::stuff;
 use signorini_cells::shapes::HalfSpace;
 use signorini_cells::*;
@@ -27,14 +28,9 @@ fn error<const D: usize>(normal: Vector<D>, at: f64, n: usize, degree: usize, cu
     let body = CellBody::new(Arc::new(Domain::shape(half)), tree, setup, stuff(space)).unwrap();
     let gradient = Matrix::<D>::from_fn(|i, j| 0.3 - 0.1 * i as f64 + 0.25 * j as f64 - 0.2 * (i * j) as f64);
     let exact = move |x: &Point<D>| gradient * x + Vector::<D>::repeat(0.1);
-    let held = Held::Components(std::array::from_fn(|k| {
-        let field: Field<D> = Arc::new(move |x: &Point<D>| exact(x)[k]);
-        Some(field)
-    }));
-    let mut system = System::new(&body);
-    system.support(&Support { on: Place::low(0), held: held.clone() }).unwrap();
+    let mut case = Case::new(&body).held_at(Place::low(0), exact);
     if cut == Cut::Held {
-        system.support(&Support { on: Place::boundary(|_| true), held }).unwrap();
+        case = case.held_at(Place::boundary(|_| true), exact);
     }
     // The stress of the linear field, from the body itself at any point.
     let mut in_space = nalgebra::Matrix3::zeros();
@@ -45,21 +41,21 @@ fn error<const D: usize>(normal: Vector<D>, at: f64, n: usize, degree: usize, cu
     }
     let full = body.stress_at(&b.center(), &in_space);
     let stress = Matrix::<D>::from_fn(|i, j| full[(i, j)]);
-    let traction = |normal: Vector<D>| Arc::new(move |_: &Point<D>| stress * normal);
     for axis in 0..D {
         for end in End::BOTH {
-            if axis == 0 && end == End::Low {
+            let (e, side) =
+                (Vector::<D>::from_fn(|k, _| if k == axis { end.sign() } else { 0.0 }), Place::Side { axis, end });
+            // A side beyond the cut has no material.
+            if (axis == 0 && end == End::Low) || body.points_on(&side).is_err() {
                 continue;
             }
-            let e = Vector::<D>::from_fn(|k, _| if k == axis { end.sign() } else { 0.0 });
-            // A side beyond the cut has no material.
-            let _ = system.load(&Load::Traction { on: Place::Side { axis, end }, value: traction(e) });
+            case = case.traction(side, move |_| stress * e);
         }
     }
     if cut == Cut::Loaded {
-        system.load(&Load::Traction { on: Place::boundary(|_| true), value: traction(normal) }).unwrap();
+        case = case.traction(Place::boundary(|_| true), move |_| stress * normal);
     }
-    let u = system.solve(Solver::Direct).unwrap().displacement;
+    let u = case.displacement();
     // In the mean square over the material: within a corner sliver of less material than the fictitious stiffness is
     // worth, of a volume of some 1e-15, the displacement is nobody's.
     let mut square = 0.0f64;
@@ -107,13 +103,9 @@ fn a_linear_field_around_an_axis() {
     let body = CellBody::new(Arc::new(Domain::shape(ball)), tree, setup, stuff(Space::Axisymmetric)).unwrap();
     let volume = 2.0 / 3.0 * std::f64::consts::PI * 0.729;
     assert!((body.volume() / volume - 1.0).abs() < 1e-10, "{:e}", body.volume() / volume - 1.0);
-    let mut system = System::new(&body);
-    system.support(&Support::symmetric(Place::low(0))).unwrap();
-    system.support(&Support::symmetric(Place::low(1))).unwrap();
-    system.load(&Load::Pressure { on: Place::boundary(|_| true), value: Arc::new(|_| 2.0) }).unwrap();
-    let u = system.solve(Solver::Direct).unwrap().displacement;
+    let u = Case::new(&body).symmetric(&[0, 1]).pressure(Place::boundary(|_| true), 2.0).displacement();
     for x in [Point::<2>::new(0.3, 0.2), Point::<2>::new(0.6, 0.6)] {
-        let state = body.probe(&x, &u).unwrap();
+        let state = body.state_at(body.cell_at(&x).unwrap(), &x, &u);
         assert!((state.displacement + x * (2.0 * 0.4)).norm() < 1e-7, "{}", state.displacement);
         assert!((state.stress + nalgebra::Matrix3::identity() * 2.0).norm() < 1e-6, "{}", state.stress);
     }

@@ -232,8 +232,12 @@ impl Reduced {
         }
         self.condensation = None;
         let size = self.unknowns.len();
+        let is_too_many = |count: usize| count > MOST[usize::from(size >= MANY)];
+        if is_too_many(needed.iter().filter(|n| **n).count()) {
+            return Err(SolveError::NotFactorised { size });
+        }
         let mut kept = self.with_neighbours(needed);
-        if kept.len() > MOST[usize::from(size >= MANY)] {
+        if is_too_many(kept.len()) {
             return Err(SolveError::NotFactorised { size });
         }
         kept.sort_unstable();

@@ -254,18 +254,18 @@ const HARDER: f64 = 0.1;
 const HARDEST: f64 = 1e-6;
 
 /// Takes the tractions found as those to give way from, beside the pressure per gap of each: the largest change, relative to
-/// the largest pressure.
+/// the largest pressure. `softness` is what they give way over what trials do.
 pub(crate) fn take_over<'a>(
     kept: impl Iterator<Item = (&'a mut [f64; 3], &'a f64)>,
     found: &[[f64; 3]],
-    around: &Around,
+    (around, softness): (&Around, f64),
 ) -> f64 {
     let most = found.iter().map(|f| f[0]).fold(0.0f64, f64::max);
     let mut change = 0.0f64;
     for ((kept, stiffness), traction) in kept.zip(found) {
         let changed = (0..3).map(|i| (kept[i] - traction[i]).abs()).fold(0.0, f64::max);
-        // Gaps are known to the rounding of positions only.
-        change = change.max(if changed > around.known * stiffness { changed / most } else { 0.0 });
+        // Gaps are known to the rounding of positions only; what gives way little makes more of that.
+        change = change.max(if changed > around.known * stiffness / softness { changed / most } else { 0.0 });
         *kept = *traction;
     }
     change

@@ -198,7 +198,7 @@ impl Interaction for Contact {
             Outer::TakesOver => {
                 let found = self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect::<Vec<_>>();
                 let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
-                let change = take_over(kept, &found, &around);
+                let change = take_over(kept, &found, (&around, self.softness));
                 self.softness = hardened(self.softness, change, &around);
                 Ok(change)
             }

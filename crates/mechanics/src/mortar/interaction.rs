@@ -350,7 +350,7 @@ impl Interaction for Mortar {
                 let projected = self.found(at, own.multipliers)?.projected;
                 let found: Vec<[f64; 3]> = projected.iter().map(|p| p.traction).collect();
                 let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
-                let change = take_over(kept, &found, &around);
+                let change = take_over(kept, &found, (&around, self.softness));
                 self.softness = hardened(self.softness, change, &around);
                 Ok(change)
             }

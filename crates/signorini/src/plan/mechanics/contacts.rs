@@ -148,7 +148,7 @@ impl Planner<'_> {
                 self.misplaced(side.unwrap_or(&on[0]), &error)
             })?;
         if let Some(friction) = &key.friction {
-            let law = self.law(friction, 3)?;
+            let law = self.law(friction)?;
             contact.axis = match friction {
                 problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
                 _ => AxisChoice::Material,
@@ -212,7 +212,7 @@ impl Planner<'_> {
         }
         let axis = match &key.friction {
             Some(friction) => {
-                contact.friction = Some(self.law(friction, 3)?);
+                contact.friction = Some(self.law(friction)?);
                 match friction {
                     problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
                     _ => AxisChoice::Tangent,

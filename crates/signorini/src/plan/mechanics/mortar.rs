@@ -50,7 +50,7 @@ impl Planner<'_> {
         let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
             .map_err(|error| problem.error(key, error.to_string()))?;
         if let Some(friction) = &key.friction {
-            contact.friction = Some(self.law(friction, 3)?);
+            contact.friction = Some(self.law(friction)?);
             if let Friction::Coulomb(coulomb) = friction {
                 contact.axis = self.axis_choice(coulomb)?;
                 self.check_axis(coulomb, contact.axis, &kinds[master.body])?;

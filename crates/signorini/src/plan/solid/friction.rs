@@ -6,8 +6,8 @@ use crate::problem::{self, CaseError, Value};
 use signorini_contact::law::{Coulomb, Law, LawError, Tresca, Viscous};
 
 impl Planner<'_> {
-    /// The law of friction in so many dimensions.
-    pub(in crate::plan) fn law(&self, key: &problem::Friction, dimension: usize) -> Result<Box<dyn Law>, CaseError> {
+    /// The law of friction.
+    pub(in crate::plan) fn law(&self, key: &problem::Friction) -> Result<Box<dyn Law>, CaseError> {
         let key = match key {
             problem::Friction::Tresca(key) => {
                 let limit = self.reader.number(&key.limit, PRESSURE)?;
@@ -28,16 +28,10 @@ impl Planner<'_> {
             Coulomb::isotropic(mu).map_err(|e| self.not_negative(&list[k], e))?;
             Ok::<f64, CaseError>(mu)
         };
-        let mu = match (list.len(), dimension) {
-            (1, _) => [coefficient(0)?; 2],
-            (2, 3) => [coefficient(0)?, coefficient(1)?],
-            (2, _) => {
-                return Err(self
-                    .problem
-                    .error(&key.mu, "in the plane slip has one direction, so there is one coefficient")
-                    .help("mu = 0.3"));
-            }
-            (found, _) => {
+        let mu = match list.len() {
+            1 => [coefficient(0)?; 2],
+            2 => [coefficient(0)?, coefficient(1)?],
+            found => {
                 return Err(self
                     .problem
                     .error(&key.mu, format!("{found} coefficients of friction"))

@@ -1,0 +1,428 @@
+// The view: bodies at a time, colours of a field, a cut, and the controls beside it.
+
+const NOTHING = -1e30;
+const byId = (id) => document.getElementById(id);
+
+class Viewer {
+  constructor(scene) {
+    this.scene = scene;
+    this.canvas = byId("canvas");
+    this.renderer = new Renderer(this.canvas);
+    this.arrays = new Arrays(scene.arrays);
+    this.camera = new Camera(scene.plane);
+    const kept = this.kept();
+    this.frame = kept.frame ?? scene.times.length - 1;
+    this.field = kept.field ?? this.firstField();
+    this.magnify = kept.magnify ?? scene.magnify;
+    this.hidden = new Set(kept.hidden ?? []);
+    this.edges = kept.edges ?? false;
+    this.cut = { axis: "", place: 0.5 };
+    this.cache = new Map();
+    this.drawn = [];
+    this.colours = this.bodyColours();
+    // In space a rigid body would hide the contact with its faces; a ceiling hides all.
+    this.seesThrough = scene.plane === "space" && scene.parts.some((p) => p.look === "contact");
+    this.camera.look(kept.from ?? scene.from);
+    this.setControls();
+    this.setPointer();
+    this.setKeys();
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    this.resize();
+    this.fit();
+    this.ready = this.show(this.frame);
+  }
+
+  /** What was chosen before the page was made again. */
+  kept() {
+    try { return SERVED ? JSON.parse(sessionStorage.getItem("view") || "{}") : {}; } catch { return {}; }
+  }
+
+  /** Keeps what is chosen for the next page; the last state stays the last. */
+  keep() {
+    const { frame, field, magnify, edges } = this;
+    const kept = { field, magnify, edges, hidden: [...this.hidden], from: this.camera.towards };
+    if (frame < this.scene.times.length - 1) kept.frame = frame;
+    sessionStorage.setItem("view", JSON.stringify(kept));
+  }
+
+  /** The first field, where bodies have it, else colours of bodies. */
+  firstField() {
+    const states = this.scene.parts.flatMap((p) => p.states).filter(Boolean);
+    const found = this.scene.fields.findIndex((f, k) => states.some((s) => k in s.fields || this.isSize(k, s)));
+    return found >= 0 && this.scene.fields[found].name !== "displacement" ? found : -1;
+  }
+
+  isSize(field, state) {
+    return this.scene.fields[field]?.name === "displacement" && Boolean(state.moved);
+  }
+
+  /** Rigid bodies are grey, the others have colours of their own. */
+  bodyColours() {
+    const names = [...new Set(this.scene.parts.filter((p) => p.look !== "rigid").map((p) => p.name))];
+    const deformable = names.length > 0 && this.scene.parts.some((p) => ["solid", "membrane", "curve"].includes(p.look));
+    const rigid = this.scene.parts.filter((p) => p.look === "rigid").map((p) => p.name);
+    return (part) => {
+      if (part.look === "outline" || part.look === "pair") return FRONT;
+      if (part.look === "rigid") return deformable || rigid.length < 2 ? GREY : BODIES[rigid.indexOf(part.name) % BODIES.length];
+      return BODIES[names.indexOf(part.name) % BODIES.length];
+    };
+  }
+
+  isDark() {
+    return matchMedia("(prefers-color-scheme: dark)").matches;
+  }
+
+  // --- controls ---
+
+  setControls() {
+    const { times, fields, parts, magnified, plane } = this.scene;
+    const time = byId("time");
+    time.max = times.length - 1;
+    time.value = this.frame;
+    byId("time-control").hidden = times.length < 2;
+    time.addEventListener("input", () => this.show(Number(time.value)));
+    byId("play").addEventListener("click", () => this.play());
+    const field = byId("field");
+    const options = [["-1", "bodies"], ...fields.map((f, k) => [String(k), f.label])];
+    field.append(...options.map(([value, text]) => new Option(text, value)));
+    field.value = String(this.field);
+    field.addEventListener("change", () => { this.field = Number(field.value); this.show(this.frame); });
+    this.setMagnify(magnified);
+    this.setCut(plane);
+    const edges = byId("edges");
+    edges.checked = this.edges;
+    edges.addEventListener("change", () => { this.edges = edges.checked; this.draw(); });
+    byId("looks").hidden = plane !== "space";
+    const looks = { x: [1, 0, 0], y: [0, -1, 0], z: [0, 0, 1] };
+    for (const button of byId("looks").querySelectorAll("button")) {
+      if (plane !== "space" && button.dataset.look !== "home") button.hidden = true;
+      button.addEventListener("click", () => {
+        this.camera.look(looks[button.dataset.look] ?? this.scene.from);
+        if (button.dataset.look === "z") { this.camera.around = -Math.PI / 2; this.camera.turn(0, 0); }
+        this.fit();
+        this.draw();
+      });
+    }
+    const words = { rigid: "rigid", contact: "contact surface", outline: "edge of the contact", arrows: "contact forces", pair: "" };
+    parts.forEach((part, number) => {
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: !this.hidden.has(number) });
+      box.addEventListener("change", () => {
+        this.hidden[box.checked ? "delete" : "add"](number);
+        this.draw();
+      });
+      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
+      swatch.style.background = `rgb(${this.colours(part)})`;
+      const label = document.createElement("label");
+      const kind = Object.assign(document.createElement("small"), { textContent: words[part.look] ?? "" });
+      label.append(box, swatch, document.createTextNode(part.name), kind);
+      byId("parts").append(label);
+    });
+  }
+
+  setMagnify(magnified) {
+    byId("magnify-control").hidden = magnified === "nothing";
+    byId("magnify-label").textContent = magnified === "deflections" ? "Heights" : "Motion";
+    const factors = [...new Set([1, 2, 5, 10, 20, 50, 100, 1000, this.magnify])].sort((a, b) => a - b);
+    const shownFactors = factors.filter((f) => f <= 20 * this.scene.magnify || f <= 10);
+    byId("magnify").append(...shownFactors.map((f) => new Option(f === 1 ? "to scale" : `× ${f}`, f)));
+    byId("magnify").value = String(this.magnify);
+    byId("magnify").addEventListener("change", () => {
+      this.magnify = Number(byId("magnify").value);
+      this.fit();
+      this.show(this.frame);
+    });
+  }
+
+  setCut(plane) {
+    const cut = byId("cut"), place = byId("cut-place");
+    if (plane === "xy") cut.options[3].remove();
+    if (plane === "xz") byId("cut-control").hidden = true;
+    const change = () => {
+      this.cut = { axis: cut.value, place: place.value / 1000 };
+      place.disabled = cut.value === "";
+      this.drawCut();
+    };
+    cut.addEventListener("change", change);
+    place.addEventListener("input", change);
+  }
+
+  setPointer() {
+    const pointers = new Map();
+    const canvas = this.canvas;
+    canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); pointers.set(e.pointerId, e); });
+    const end = (e) => pointers.delete(e.pointerId);
+    canvas.addEventListener("pointerup", end);
+    canvas.addEventListener("pointercancel", end);
+    canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+    canvas.addEventListener("pointermove", (e) => {
+      const before = pointers.get(e.pointerId);
+      if (!before) return;
+      const [x, y] = [(e.clientX - before.clientX) / canvas.clientHeight, (e.clientY - before.clientY) / canvas.clientHeight];
+      if (pointers.size === 2) {
+        const other = [...pointers.values()].find((p) => p.pointerId !== e.pointerId);
+        const apart = (p) => Math.hypot(p.clientX - other.clientX, p.clientY - other.clientY) || 1;
+        this.camera.zoom(apart(e) / apart(before));
+        this.camera.move(x / 2, -y / 2);
+      } else if (e.shiftKey || e.buttons !== 1 || this.scene.plane !== "space") this.camera.move(x, -y);
+      else this.camera.turn(-3 * x, 3 * y);
+      pointers.set(e.pointerId, e);
+      this.draw();
+    });
+    canvas.addEventListener("wheel", (e) => {
+      // Only where the picture was chosen: else the page moves.
+      if (document.activeElement !== canvas && !e.ctrlKey) return;
+      e.preventDefault();
+      this.camera.zoom(Math.exp(-0.0015 * e.deltaY));
+      this.draw();
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", () => canvas.focus());
+  }
+
+  setKeys() {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    this.canvas.addEventListener("keydown", (e) => {
+      const [x, y] = step[e.key] ?? [0, 0];
+      if (e.ctrlKey || e.metaKey || e.altKey) return;
+      if (step[e.key] && (e.shiftKey || this.scene.plane !== "space")) this.camera.move(0.06 * x, 0.06 * y);
+      else if (step[e.key]) this.camera.turn(0.12 * x, 0.12 * y);
+      else if (e.key === "+" || e.key === "=") this.camera.zoom(1.2);
+      else if (e.key === "-") this.camera.zoom(1 / 1.2);
+      else if (e.key === "Home") { this.camera.look(this.scene.from); this.fit(); }
+      else if (e.key === "," || e.key === ".") return this.show(this.frame + (e.key === "." ? 1 : -1));
+      else return;
+      e.preventDefault();
+      this.draw();
+    });
+  }
+
+  play() {
+    const button = byId("play");
+    const stop = () => { clearInterval(this.timer); this.timer = undefined; button.textContent = "▶"; button.ariaLabel = "Play"; };
+    if (this.timer) return stop();
+    button.textContent = "❚❚";
+    button.ariaLabel = "Pause";
+    const count = this.scene.times.length;
+    const step = async () => { await this.ready; this.show((this.frame + 1) % count); };
+    this.timer = setInterval(step, Math.min(500, Math.max(60, 5000 / count)));
+  }
+
+  // --- what is seen ---
+
+  /** Shows a state. */
+  show(frame) {
+    this.frame = Math.min(Math.max(frame, 0), this.scene.times.length - 1);
+    byId("time").value = this.frame;
+    const time = shown(this.scene.times[this.frame], 5);
+    byId("time-value").textContent = time;
+    byId("time").setAttribute("aria-valuetext", `t = ${time}`);
+    const wanted = (this.wanted = Symbol());
+    this.ready = this.load(this.frame).then((parts) => {
+      if (this.wanted !== wanted) return;
+      this.drawn.flatMap((p) => p.meshes).forEach((item) => this.renderer.remove(item.mesh));
+      this.drawn = parts.map((part) => ({ ...part, meshes: this.meshes(part) }));
+      this.bar();
+      this.drawCut();
+      const field = this.scene.fields[this.field];
+      this.canvas.ariaLabel = `${field ? field.label : "Bodies"} at t = ${time}: ${this.scene.parts.map((p) => p.name).join(", ")}`;
+    });
+    return this.ready;
+  }
+
+  /** Places, values and what joins them, of all parts at a time. */
+  async load(frame) {
+    const { parts, shapes, fields } = this.scene;
+    const found = parts.map(async (part, number) => {
+      const state = part.states[frame];
+      if (!state) return undefined;
+      const own = shapes[state.shape];
+      const get = (list) => Promise.all(list.map((k) => this.arrays.get(k)));
+      const [at, moved, joins] = await Promise.all([get(state.at), state.moved ? get(state.moved) : undefined,
+        get([own.triangles, own.edges, own.lines, own.tetrahedra])]);
+      const count = at[0].length;
+      let values = new Float32Array(count).fill(NOTHING), isColoured = false;
+      if (this.isSize(this.field, state)) {
+        values = values.map((_, k) => Math.hypot(moved[0][k], moved[1][k], moved[2][k]));
+        isColoured = true;
+      } else if (this.field >= 0 && this.field in state.fields) {
+        values = (await this.arrays.get(state.fields[this.field])).map((v) => (isNaN(v) ? NOTHING : v));
+        isColoured = true;
+      }
+      const bodies = this.scene.magnified === "displacements" ? this.magnify : 1;
+      const heights = this.scene.magnified === "deflections" ? this.magnify : 1;
+      const places = new Float32Array(3 * count);
+      for (let k = 0; k < count; k++) {
+        for (let i = 0; i < 3; i++) {
+          places[3 * k + i] = (at[i][k] + (moved ? bodies * moved[i][k] : 0)) * (i === 2 ? heights : 1);
+        }
+      }
+      const [triangles, edges, lines, tetrahedra] = joins;
+      return { part, number, at: places, values, isColoured, triangles, edges, lines, tetrahedra, field: fields[this.field] };
+    });
+    return (await Promise.all(found)).filter(Boolean);
+  }
+
+  /** Normals of points: means over the triangles. */
+  normals(at, triangles) {
+    const out = new Float32Array(at.length);
+    const p = (k, i) => at[3 * triangles[k] + i];
+    for (let k = 0; k < triangles.length; k += 3) {
+      const [u, v] = [1, 2].map((c) => [0, 1, 2].map((i) => p(k + c, i) - p(k, i)));
+      const n = cross(u, v);
+      for (let c = 0; c < 3; c++) for (let i = 0; i < 3; i++) out[3 * triangles[k + c] + i] += n[i];
+    }
+    return out;
+  }
+
+  /** What is drawn of a part. */
+  meshes({ part, at, values, isColoured, triangles, edges, lines }) {
+    const renderer = this.renderer, out = [];
+    const colour = this.colours(part);
+    const isContact = part.look === "contact";
+    const ink = () => (this.isDark() ? [220, 224, 230] : [40, 44, 50]);
+    const isLine = part.look === "rigid" && triangles.length === 0;
+    if (triangles.length > 0) {
+      const mesh = renderer.addSurface(at, this.normals(at, triangles), values, triangles);
+      // A contact surface lies on its body; where colours show what the body does not have, the body lets it be seen.
+      const behind = { rigid: 3, solid: 1, membrane: 1, contact: 0 }[part.look] ?? 1;
+      out.push({ mesh, kind: "surface", coloured: isColoured, behind, colour: () => [...colour, this.opacity(part, isColoured)] });
+      if (edges.length > 0 && part.look !== "rigid" && !isContact) {
+        const drawn = renderer.addLines(at, values, edges);
+        out.push({ mesh: drawn, kind: "edges", width: 1, nearer: 5e-5, colour: () => [...ink(), 0.35] });
+      }
+    }
+    if (lines.length > 0) {
+      const mesh = renderer.addLines(at, values, lines);
+      const width = { curve: 5, outline: 3, arrows: 1.8, pair: 4 }[part.look] ?? (isLine ? 2.5 : 4);
+      const own = part.look === "arrows" && !isColoured ? ink() : colour;
+      const nearer = part.look === "outline" ? 2e-3 : part.look === "curve" ? 3e-4 : 1e-3;
+      out.push({ mesh, kind: "lines", coloured: isColoured && !isLine, width, nearer, colour: () => [...own, 1] });
+    }
+    return out;
+  }
+
+  opacity(part, isColoured) {
+    const fields = this.scene.parts.some((p) => p.look === "contact");
+    if (part.name === "ceiling" && part.look === "rigid") return 0.3;
+    if (part.look === "rigid") return this.seesThrough ? 0.3 : 1;
+    if (part.look === "solid" && this.field >= 0 && !isColoured && fields) return 0.18;
+    return 1;
+  }
+
+  /** The box of what is fitted, as it is magnified. */
+  box() {
+    const { low, high, magnified, magnify } = this.scene;
+    const grown = magnified === "deflections" ? this.magnify : 1;
+    const room = magnified === "displacements" && this.magnify > magnify ? 0.1 : 0;
+    const ends = [low, high].map((x) => x.map((v, k) => (k === 2 ? v * grown : v)));
+    return ends.map((x, end) => x.map((v, k) => v + (end ? 1 : -1) * room * (ends[1][k] - ends[0][k])));
+  }
+
+  fit() {
+    const [low, high] = this.box();
+    const bar = this.field >= 0 && !byId("bar").hidden ? byId("bar").offsetWidth + 24 : 0;
+    this.camera.fit(low, high, this.aspect(), 1 - bar / (this.canvas.clientWidth || 800));
+  }
+
+  aspect() {
+    return this.canvas.width / this.canvas.height || 1;
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    const ratio = window.devicePixelRatio || 1;
+    if (!clientWidth || !clientHeight) return;
+    const before = this.aspect();
+    this.canvas.width = Math.round(clientWidth * ratio);
+    this.canvas.height = Math.round(clientHeight * ratio);
+    if (Math.abs(this.aspect() - before) > 0.01) this.fit();
+    this.draw();
+  }
+
+  /** Which half-space is left, as (normal, distance). */
+  cutPlane() {
+    const axis = Number(this.cut.axis);
+    if (this.cut.axis === "") return [0, 0, 0, 1];
+    const [low, high] = this.box();
+    const room = 0.002 * (high[axis] - low[axis]);
+    const place = low[axis] - room + (high[axis] - low[axis] + 2 * room) * this.cut.place;
+    // What is nearer to the eye is cut away.
+    const side = this.camera.towards[axis] < 0 ? -1 : 1;
+    const plane = [0, 0, 0, side * place];
+    plane[axis] = side;
+    return plane;
+  }
+
+  /** The faces of the cut, and then everything. */
+  drawCut() {
+    this.faces?.forEach((face) => this.renderer.remove(face.mesh));
+    const [x, y, z, distance] = (this.plane = this.cutPlane());
+    const solids = this.cut.axis === "" ? [] : this.drawn.filter((p) => p.tetrahedra.length > 0);
+    this.faces = solids.map(({ part, number, at, values, tetrahedra, isColoured }) => {
+      const face = cutThrough(at, values, tetrahedra, [x, y, z], distance - 1e-6 * Math.abs(distance || 1));
+      const mesh = this.renderer.addSurface(face.at, face.normals, face.values, face.triangles);
+      return { mesh, number, coloured: isColoured, colour: () => [...this.colours(part), this.opacity(part, isColoured)] };
+    });
+    this.draw();
+  }
+
+  /** Draws at the next frame of the screen. */
+  draw() {
+    if (this.pending) return;
+    this.pending = requestAnimationFrame(() => {
+      this.pending = 0;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
+    const items = [...this.drawn.flatMap((p) => p.meshes.map((m) => ({ ...m, number: p.number }))), ...(this.faces ?? [])];
+    const list = items.filter((i) => !this.hidden.has(i.number) && (i.kind !== "edges" || this.edges));
+    const range = this.scene.fields[this.field]?.range ?? [0, 1];
+    this.renderer.draw(list.map((i) => ({ ...i, colour: i.colour() })), {
+      camera: this.camera,
+      cut: this.plane ?? [0, 0, 0, 1],
+      range: range[1] > range[0] ? range : [range[0] - 1, range[0] + 1],
+      isFlat: this.scene.plane !== "space",
+      ground: this.isDark() ? [27, 30, 35] : [255, 255, 255],
+    });
+    this.axes();
+  }
+
+  /** The directions of the axes, in the corner. */
+  axes() {
+    const { right, up } = this.camera;
+    const names = this.scene.plane === "xz" ? [["x", 0], ["z", 2]] : this.scene.plane === "xy" ? [["x", 0], ["y", 1]] : [["x", 0], ["y", 1], ["z", 2]];
+    byId("axes").innerHTML = names.map(([name, k]) => {
+      const [x, y] = [30 * right[k], -30 * up[k]];
+      const [a, b] = [40 * right[k], -40 * up[k]];
+      const seen = Math.hypot(x, y) > 6;
+      return seen ? `<line x1="0" y1="0" x2="${x}" y2="${y}"/><text x="${a}" y="${b}">${name}</text>` : "";
+    }).join("");
+  }
+
+  /** The colour bar with its unit, round values and ends. */
+  bar() {
+    const field = this.scene.fields[this.field];
+    const before = byId("bar").hidden ? 0 : byId("bar").offsetWidth;
+    byId("bar").hidden = !field;
+    if (field) {
+      byId("bar-title").textContent = field.unit ? `${field.label} [${field.unit}]` : field.label;
+      const context = byId("bar-colours").getContext("2d");
+      for (let k = 0; k < 256; k++) {
+        context.fillStyle = `rgb(${viridis(1 - k / 255)})`;
+        context.fillRect(0, k, 1, 1);
+      }
+      const [low, high] = field.range;
+      const values = high > low ? roundValues(low, high, 5) : [low];
+      byId("bar-ticks").replaceChildren(...values.map((value) => {
+        const tick = document.createElement("li");
+        tick.style.bottom = `${high > low ? (100 * (value - low)) / (high - low) : 50}%`;
+        tick.textContent = shown(value);
+        return tick;
+      }));
+      byId("bar-ends").textContent = `largest ${shown(field.ends[1])}\nsmallest ${shown(field.ends[0])}`;
+    }
+    if (Math.abs((field ? byId("bar").offsetWidth : 0) - before) > 40 && !this.moved) this.fit();
+  }
+}

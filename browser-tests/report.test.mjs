@@ -10,7 +10,7 @@ const folder = resolve(process.env.REPORTS ?? "reports");
 const files = readdirSync(folder).filter((name) => name.endsWith(".html"));
 const path = (name) => `${folder}/${name}`;
 /** Cases with several states, in the plane and in space. */
-const moving = files.filter((name) => ["string.html", "die.html", "cosine_disc.html", "belt.html"].includes(name));
+const moving = files.filter((name) => ["snap_in.html", "die.html", "cosine_disc.html", "belt.html"].includes(name));
 
 describe("with WebGL", () => {
   let chromium;

@@ -10,7 +10,7 @@ if [ "${1:-}" = "--reports" ]; then
     REPORTS=$(cd "$2" && pwd)
 else
     REPORTS="$made"
-    [ $# -gt 0 ] || set -- string cosine_disc die belt tendon swords
+    [ $# -gt 0 ] || set -- snap_in cosine_disc die belt tendon swords
     cargo build --release --locked -p signorini-cli
     signorini="${CARGO_TARGET_DIR:-target}/release/signorini"
     for name; do

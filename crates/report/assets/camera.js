@@ -43,22 +43,34 @@ class Camera {
     this.height = Math.min(Math.max(this.height / factor, this.whole * 1e-3), this.whole * 20);
   }
 
-  /** Shows a box, with room beside it; `aspect` is width over height, `free` the part of the width that nothing covers. */
-  fit(low, high, aspect, free) {
-    const ends = [[Infinity, -Infinity], [Infinity, -Infinity]];
-    for (let corner = 0; corner < 8; corner++) {
-      const x = [0, 1, 2].map((k) => ((corner >> k) & 1 ? high[k] : low[k]));
-      [this.right, this.up].forEach((axis, k) => {
-        ends[k] = [Math.min(ends[k][0], dot(axis, x)), Math.max(ends[k][1], dot(axis, x))];
-      });
+  /** The ends of points along the directions of the view. */
+  ends(points) {
+    return [this.right, this.up, this.towards].map((axis) => {
+      const places = points.map((x) => dot(axis, x));
+      return [places.reduce((a, b) => Math.min(a, b), Infinity), places.reduce((a, b) => Math.max(a, b), -Infinity)];
+    });
+  }
+
+  /**
+   * Shows points, with room beside them, and lists of others where that makes them smaller by at most a factor. `aspect` is
+   * width over height, `free` the part of the width that nothing covers.
+   */
+  fit(points, others, most, aspect, free) {
+    const needed = (ends) => Math.max(ends[1][1] - ends[1][0], (ends[0][1] - ends[0][0]) / (aspect * free));
+    const own = this.ends(points);
+    const joined = (a, b) => a.map(([low, high], k) => [Math.min(low, b[k][0]), Math.max(high, b[k][1])]);
+    let ends = own, all = own;
+    for (const list of others.filter((list) => list.length > 0)) {
+      const wider = joined(ends, this.ends(list));
+      all = joined(all, wider);
+      if (needed(wider) <= most * needed(own)) ends = wider;
     }
-    const [width, height] = ends.map(([a, b]) => b - a);
-    this.height = 1.14 * Math.max(height, width / (aspect * free)) || 1;
+    this.height = 1.12 * needed(ends) || 1;
     this.whole = this.height;
-    const size = Math.hypot(...high.map((h, k) => h - low[k])) || 1;
-    this.depth = 20 * size;
-    this.middle = low.map((l, k) => (l + high[k]) / 2);
-    this.move(-(1 - free) / 2 * aspect, 0);
+    this.depth = 20 * (Math.hypot(...all.map(([a, b]) => b - a)) || 1);
+    const middles = ends.map(([a, b]) => (a + b) / 2);
+    this.middle = [0, 1, 2].map((i) => middles[0] * this.right[i] + middles[1] * this.up[i] + middles[2] * this.towards[i]);
+    this.move((-(1 - free) / 2) * aspect, 0);
   }
 
   /** The matrix that puts points into the view, column by column. */

@@ -7,15 +7,17 @@ function drawChart(place, chart) {
   const heading = Object.assign(document.createElement("h3"), { textContent: chart.title });
   const few = chart.x.length <= 60;
   const colours = ["#3f7fc4", "#d08a00", "#1f9e77", "#c05f98", "#8a7a20", "#d0552f", "#7474bd", "#5b9aa0"];
-  const number = (u, value) => (value == null ? "–" : shown(value, 6));
+  const number = (u, value) => (value == null ? "" : shown(value, 6));
   const series = chart.series.map((s, k) => ({
     label: s.label, stroke: colours[k % colours.length], width: 2, points: { show: few, size: 6 }, value: number, spanGaps: false,
   }));
   const axis = (label, size) => ({
     stroke: ink, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1 }, label, size, font: "12px system-ui, sans-serif",
     labelFont: "13px system-ui, sans-serif", labelSize: label ? 24 : 0,
-    values: (u, list) => list.map((v) => (v == null ? "" : chart.log && size > 50 ? power(v) : shown(v))),
+    values: (u, list) => list.map((v) => (v == null ? "" : chart.log && size > 50 ? `1e${Math.round(Math.log10(v))}` : shown(v))),
   });
+  const upright = axis("", 64);
+  if (chart.log) upright.splits = (u, k, low, high) => powers(low, high);
   const limit = (u) => {
     if (chart.limit === undefined) return;
     const y = u.valToPos(chart.limit, "y", true);
@@ -34,7 +36,7 @@ function drawChart(place, chart) {
   const options = {
     width: 400, height: 260, legend: { live: true }, cursor: { drag: { x: true, y: false } },
     scales: { x: { time: false }, y: chart.log ? { distr: 3 } : { range: padded } },
-    axes: [axis(chart.x_label, 46), axis("", 64)], series: [{ label: chart.x_label.split(",")[0], value: number }, ...series],
+    axes: [axis(chart.x_label, 46), upright], series: [{ label: chart.x_label.split(",")[0], value: number }, ...series],
     hooks: { draw: [limit] },
   };
   const values = chart.series.map((s) => s.values);
@@ -56,10 +58,13 @@ function drawChart(place, chart) {
   return plot;
 }
 
-/** A power of ten, only where it is whole. */
-function power(value) {
-  const exponent = Math.log10(value);
-  return Math.abs(exponent - Math.round(exponent)) < 1e-6 ? `1e${Math.round(exponent)}` : "";
+/** Powers of ten between two values, not more than are read. */
+function powers(low, high) {
+  const [from, to] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+  const step = Math.max(1, Math.ceil((to - from) / 7));
+  const list = [];
+  for (let k = Math.ceil(from / step) * step; k <= to; k += step) list.push(10 ** k);
+  return list;
 }
 
 /** Values with room above and below, from zero where they begin near it. */

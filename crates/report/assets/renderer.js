@@ -10,7 +10,7 @@ void main() { place = at; smoothed = normal; shownValue = value; gl_Position = v
 const SURFACE_COLOUR = `#version 300 es
 precision highp float;
 in vec3 place; in vec3 smoothed; in float shownValue;
-uniform vec3 towards, light; uniform vec4 cut, colour; uniform vec2 range; uniform bool isFlat; uniform float coloured;
+uniform vec3 towards, light; uniform vec4 cut, colour; uniform vec2 range; uniform bool isFlat; uniform float coloured, crease;
 uniform sampler2D palette;
 out vec4 result;
 void main() {
@@ -19,7 +19,7 @@ void main() {
   if (dot(face, towards) < 0.0) face = -face;
   vec3 n = normalize(smoothed);
   if (dot(n, towards) < 0.0) n = -n;
-  if (!(dot(n, face) > 0.85)) n = face;
+  if (!(dot(n, face) > crease)) n = face;
   float shade = isFlat ? 1.0 : 0.52 + 0.48 * max(dot(n, light), 0.0);
   vec3 own = colour.rgb;
   if (coloured > 0.0 && shownValue > -1e29) {
@@ -146,7 +146,7 @@ class Renderer {
     buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
   }
 
-  /** Draws a list of { mesh, colour, width, coloured, behind, nearer } with what they have in common. */
+  /** Draws a list of { mesh, colour, width, coloured, behind, nearer, crease } with what they have in common. */
   draw(list, { camera, cut, range, isFlat, ground }) {
     const gl = this.gl;
     const [width, height] = [gl.canvas.width, gl.canvas.height];
@@ -157,7 +157,7 @@ class Renderer {
     const light = unit(camera.towards.map((t, k) => t + 0.35 * camera.up[k] - 0.25 * camera.right[k]));
     const isClear = (item) => item.colour[3] < 1;
     const order = [...list.filter((i) => !isClear(i)), ...list.filter(isClear)];
-    for (const { mesh, colour, width: wide = 1, coloured = false, behind = 0, nearer = 0 } of order) {
+    for (const { mesh, colour, width: wide = 1, coloured = false, behind = 0, nearer = 0, crease = 0.85 } of order) {
       const { made, uniforms } = mesh.isLines ? this.line : this.surface;
       gl.useProgram(made);
       gl.uniformMatrix4fv(uniforms.view, false, view);
@@ -177,6 +177,7 @@ class Renderer {
       } else {
         gl.uniform3fv(uniforms.towards, camera.towards);
         gl.uniform3fv(uniforms.light, light);
+        gl.uniform1f(uniforms.crease, crease);
         gl.uniform1i(uniforms.isFlat, isFlat ? 1 : 0);
         gl.enable(gl.POLYGON_OFFSET_FILL);
         gl.polygonOffset(1 + behind, 1 + behind);

@@ -11,7 +11,7 @@ class Viewer {
     this.arrays = new Arrays(scene.arrays);
     this.camera = new Camera(scene.plane);
     const kept = this.kept();
-    this.frame = kept.frame ?? scene.times.length - 1;
+    this.frame = kept.frame ?? scene.first;
     this.field = kept.field ?? this.firstField();
     this.magnify = kept.magnify ?? scene.magnify;
     this.hidden = new Set(kept.hidden ?? []);
@@ -29,7 +29,6 @@ class Viewer {
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     this.resize();
-    this.fit();
     this.ready = this.show(this.frame);
   }
 
@@ -46,11 +45,13 @@ class Viewer {
     sessionStorage.setItem("view", JSON.stringify(kept));
   }
 
-  /** The first field, where bodies have it, else colours of bodies. */
+  /** The first field that is worth it and that bodies have, else contacts; none where only colours of bodies tell something. */
   firstField() {
-    const states = this.scene.parts.flatMap((p) => p.states).filter(Boolean);
-    const found = this.scene.fields.findIndex((f, k) => states.some((s) => k in s.fields || this.isSize(k, s)));
-    return found >= 0 && this.scene.fields[found].name !== "displacement" ? found : -1;
+    const { parts, fields } = this.scene;
+    const has = (list, k) => list.some((p) => p.states.some((s) => s && k in s.fields));
+    const bodies = parts.filter((p) => ["solid", "membrane", "curve"].includes(p.look));
+    const worth = fields.map((f, k) => k).filter((k) => fields[k].first);
+    return worth.find((k) => has(bodies, k)) ?? worth.find((k) => has(parts, k)) ?? -1;
   }
 
   isSize(field, state) {
@@ -115,7 +116,7 @@ class Viewer {
       swatch.style.background = `rgb(${this.colours(part)})`;
       const label = document.createElement("label");
       const kind = Object.assign(document.createElement("small"), { textContent: words[part.look] ?? "" });
-      label.append(box, swatch, document.createTextNode(part.name), kind);
+      label.append(box, swatch, document.createTextNode(part.look === "outline" && part.name === "contact" ? "" : part.name), kind);
       byId("parts").append(label);
     });
   }
@@ -129,7 +130,7 @@ class Viewer {
     byId("magnify").value = String(this.magnify);
     byId("magnify").addEventListener("change", () => {
       this.magnify = Number(byId("magnify").value);
-      this.fit();
+      this.isFitted = false;
       this.show(this.frame);
     });
   }
@@ -222,6 +223,8 @@ class Viewer {
       this.drawn.flatMap((p) => p.meshes).forEach((item) => this.renderer.remove(item.mesh));
       this.drawn = parts.map((part) => ({ ...part, meshes: this.meshes(part) }));
       this.bar();
+      if (!this.isFitted) this.fit();
+      this.isFitted = true;
       this.drawCut();
       const field = this.scene.fields[this.field];
       this.canvas.ariaLabel = `${field ? field.label : "Bodies"} at t = ${time}: ${this.scene.parts.map((p) => p.name).join(", ")}`;
@@ -262,16 +265,31 @@ class Viewer {
     return (await Promise.all(found)).filter(Boolean);
   }
 
-  /** Normals of points: means over the triangles. */
-  normals(at, triangles) {
-    const out = new Float32Array(at.length);
+  /** Whether a surface was found on a grid: its slivers have no normals worth seeing. Bodies of scenes have edges. */
+  isSampled(part) {
+    return part.look === "rigid" && !this.scene.parts.some((p) => p.look === "pair");
+  }
+
+  /** Normals of points: means over the triangles, where wanted of all points that are hardly apart. */
+  normals(at, triangles, joins) {
+    const owners = new Uint32Array(at.length / 3).map((_, k) => k);
+    if (joins) {
+      const size = at.reduce((m, v) => Math.max(m, Math.abs(v)), 0) / 500 || 1;
+      const first = new Map();
+      for (let k = 0; k < owners.length; k++) {
+        const key = [0, 1, 2].reduce((key, i) => key * 2048 + Math.round(at[3 * k + i] / size) + 1024, 0);
+        if (!first.has(key)) first.set(key, k);
+        owners[k] = first.get(key);
+      }
+    }
+    const sums = new Float32Array(at.length);
     const p = (k, i) => at[3 * triangles[k] + i];
     for (let k = 0; k < triangles.length; k += 3) {
       const [u, v] = [1, 2].map((c) => [0, 1, 2].map((i) => p(k + c, i) - p(k, i)));
       const n = cross(u, v);
-      for (let c = 0; c < 3; c++) for (let i = 0; i < 3; i++) out[3 * triangles[k + c] + i] += n[i];
+      for (let c = 0; c < 3; c++) for (let i = 0; i < 3; i++) sums[3 * owners[triangles[k + c]] + i] += n[i];
     }
-    return out;
+    return sums.map((_, k) => sums[3 * owners[Math.floor(k / 3)] + (k % 3)]);
   }
 
   /** What is drawn of a part. */
@@ -282,10 +300,13 @@ class Viewer {
     const ink = () => (this.isDark() ? [220, 224, 230] : [40, 44, 50]);
     const isLine = part.look === "rigid" && triangles.length === 0;
     if (triangles.length > 0) {
-      const mesh = renderer.addSurface(at, this.normals(at, triangles), values, triangles);
+      const mesh = renderer.addSurface(at, this.normals(at, triangles, this.isSampled(part)), values, triangles);
       // A contact surface lies on its body; where colours show what the body does not have, the body lets it be seen.
       const behind = { rigid: 3, solid: 1, membrane: 1, contact: 0 }[part.look] ?? 1;
-      out.push({ mesh, kind: "surface", coloured: isColoured, behind, colour: () => [...colour, this.opacity(part, isColoured)] });
+      // A contact surface without colours would hide the body.
+      if (!isContact || isColoured) out.push({ mesh, kind: "surface", coloured: isColoured, behind, crease: this.isSampled(part) ? -1 : 0.85,
+        colour: () => [...colour, this.opacity(part, isColoured)] });
+      else renderer.remove(mesh);
       if (edges.length > 0 && part.look !== "rigid" && !isContact) {
         const drawn = renderer.addLines(at, values, edges);
         out.push({ mesh: drawn, kind: "edges", width: 1, nearer: 5e-5, colour: () => [...ink(), 0.35] });
@@ -296,7 +317,8 @@ class Viewer {
       const width = { curve: 5, outline: 3, arrows: 1.8, pair: 4 }[part.look] ?? (isLine ? 2.5 : 4);
       const own = part.look === "arrows" && !isColoured ? ink() : colour;
       const nearer = part.look === "outline" ? 2e-3 : part.look === "curve" ? 3e-4 : 1e-3;
-      out.push({ mesh, kind: "lines", coloured: isColoured && !isLine, width, nearer, colour: () => [...own, 1] });
+      const clear = part.look === "arrows" && !isColoured ? 0.6 : 1;
+      out.push({ mesh, kind: "lines", coloured: isColoured && !isLine, width, nearer, colour: () => [...own, clear] });
     }
     return out;
   }
@@ -311,17 +333,35 @@ class Viewer {
 
   /** The box of what is fitted, as it is magnified. */
   box() {
-    const { low, high, magnified, magnify } = this.scene;
+    const { low, high, magnified } = this.scene;
     const grown = magnified === "deflections" ? this.magnify : 1;
-    const room = magnified === "displacements" && this.magnify > magnify ? 0.1 : 0;
-    const ends = [low, high].map((x) => x.map((v, k) => (k === 2 ? v * grown : v)));
-    return ends.map((x, end) => x.map((v, k) => v + (end ? 1 : -1) * room * (ends[1][k] - ends[0][k])));
+    return [low, high].map((x) => x.map((v, k) => (k === 2 ? v * grown : v)));
   }
 
+  /** Points of parts, not more than tell where they end. */
+  points(parts) {
+    const out = [];
+    for (const { at } of parts) {
+      const step = 3 * Math.max(1, Math.floor(at.length / 9000));
+      for (let k = 0; k < at.length; k += step) out.push([at[k], at[k + 1], at[k + 2]]);
+    }
+    return out;
+  }
+
+  /** Fits the bodies that are shown now, and forces, rigid bodies and other times where that makes them hardly smaller. */
   fit() {
+    const of = (...looks) => this.drawn.filter((p) => looks.includes(p.part.look));
+    const bodies = of("solid", "membrane", "curve");
     const [low, high] = this.box();
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => [0, 1, 2].map((k) => ((c >> k) & 1 ? high[k] : low[k])));
     const bar = this.field >= 0 && !byId("bar").hidden ? byId("bar").offsetWidth + 24 : 0;
-    this.camera.fit(low, high, this.aspect(), 1 - bar / (this.canvas.clientWidth || 800));
+    const free = 1 - bar / (this.canvas.clientWidth || 800);
+    const own = this.points(bodies.length > 0 ? bodies : this.drawn);
+    const others = [...of("arrows"), ...of("rigid")].map((part) => this.points([part]));
+    if (this.scene.times.length > 1) others.push(corners);
+    // A rope or a path is shown with what it lies on.
+    const most = of("solid", "membrane").length > 0 ? 1.4 : 2.2;
+    this.camera.fit(own.length > 1 ? own : corners, others, most, this.aspect(), free);
   }
 
   aspect() {
@@ -423,6 +463,6 @@ class Viewer {
       }));
       byId("bar-ends").textContent = `largest ${shown(field.ends[1])}\nsmallest ${shown(field.ends[0])}`;
     }
-    if (Math.abs((field ? byId("bar").offsetWidth : 0) - before) > 40 && !this.moved) this.fit();
+    if (Math.abs((field ? byId("bar").offsetWidth : 0) - before) > 40) this.isFitted = false;
   }
 }

@@ -49,9 +49,10 @@ const ROUNDING: f64 = 1e-9;
 /// More points than this are not seen on a chart.
 const POINTS: usize = 2000;
 
-/// The histories of a folder.
-pub fn histories(results: &Results) -> Vec<Chart> {
-    let mut charts = results.text("history.csv").map_or_else(Vec::new, |text| of_history(&text));
+/// The histories of a folder, of bodies of a size.
+pub fn histories(results: &Results, size: f64) -> Vec<Chart> {
+    let mut charts =
+        results.text("history.csv").map_or_else(Vec::new, |text| of_history(&text, size, results.is_flat()));
     charts.extend(of_paths(results));
     charts.extend(results.text("fit.csv").and_then(|text| of_fit(&text)));
     charts.extend(results.text("pairs.csv").and_then(|text| of_pairs(&text)));
@@ -72,7 +73,7 @@ fn columns(text: &str) -> Option<(Vec<String>, Vec<Vec<Option<f64>>>)> {
     Some((head, columns))
 }
 
-fn of_history(text: &str) -> Vec<Chart> {
+fn of_history(text: &str, length: f64, is_flat: bool) -> Vec<Chart> {
     let Some((head, columns)) = columns(text) else { return Vec::new() };
     let Some(time) = head.iter().position(|h| h == "time") else { return Vec::new() };
     let x: Vec<f64> = columns[time].iter().map(|v| v.unwrap_or(f64::NAN)).collect();
@@ -90,9 +91,14 @@ fn of_history(text: &str) -> Vec<Chart> {
         let label = if label.is_empty() { SHOWN[order].1.to_string() } else { label };
         groups.entry((order, unit.to_string())).or_default().push(Series { label, values: values.clone() });
     }
+    let size = |s: &Series| s.values.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
+    let forces = groups.iter().filter(|((order, _), _)| SHOWN[*order].0 == "force").flat_map(|g| g.1);
+    let largest_force = forces.map(size).fold(0.0, f64::max);
     let chart = |((order, unit), mut series): ((usize, String), Vec<Series>)| {
-        let size = |s: &Series| s.values.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
         let most = series.iter().map(size).fold(0.0, f64::max);
+        if SHOWN[order].0 == "moment" && most <= ROUNDING * largest_force * length {
+            return None;
+        }
         series.retain(|s| size(s) > ROUNDING * most);
         series.sort_by(|a, b| size(b).total_cmp(&size(a)));
         series.truncate(LINES);
@@ -101,7 +107,8 @@ fn of_history(text: &str) -> Vec<Chart> {
         if series.iter().all(is_constant) {
             return None;
         }
-        let title = headed(SHOWN[order].1, &unit);
+        let title = if is_flat && SHOWN[order].0 == "area" { "Contact length" } else { SHOWN[order].1 };
+        let title = headed(title, &unit);
         Some(Chart { title, x_label: "t".into(), x: x.clone(), series, log: false, limit: None })
     };
     groups.into_iter().filter_map(chart).collect()

@@ -115,12 +115,11 @@ impl Results {
         }
     }
 
-    /// The changes of contact zones so far.
-    pub fn events(&self) -> &[Event] {
+    /// The time at which the bodies of a scene are closest.
+    pub fn closest(&self) -> Option<f64> {
         match &self.told {
-            Told::Run(summary) => &summary.events,
-            Told::Unfinished(found) => &found.events,
-            Told::Other(_) => &[],
+            Told::Other(value) => value["closest"]["time"].as_f64(),
+            _ => None,
         }
     }
 
@@ -137,6 +136,15 @@ impl Results {
         };
         let name = || self.path.file_name().map_or("Results".into(), |name| name.to_string_lossy().into_owned());
         told.filter(|title| !title.is_empty()).or_else(of_case).unwrap_or_else(name)
+    }
+
+    /// Whether areas of contacts are lengths.
+    pub fn is_flat(&self) -> bool {
+        let of_case = || {
+            let table: toml::Table = self.case.as_ref()?.parse().ok()?;
+            Some(["line", "plane_strain", "plane_stress"].contains(&table.get("space")?.as_str()?))
+        };
+        of_case().unwrap_or(false)
     }
 
     /// A text file of the folder; none where it is not there or no text.

@@ -80,7 +80,7 @@ pub fn sentence(key: &str) -> String {
 }
 
 /// Fields that a reader wants to see first, the most wanted first.
-pub const WANTED: [&str; 8] = [
+pub const WANTED: [&str; 9] = [
     "von_mises",
     "contact_pressure",
     "utilisation",
@@ -88,5 +88,6 @@ pub const WANTED: [&str; 8] = [
     "tension",
     "axial_force",
     "bending_moment",
+    "normal_force",
     "displacement",
 ];

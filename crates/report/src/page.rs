@@ -45,7 +45,8 @@ pub fn page(results: &Results, purpose: Purpose) -> String {
     let context = context(results);
     let scene = scene(&results.path, &context);
     let (pictures, left) = pictures(results);
-    let histories = histories(results);
+    let size = scene.as_ref().map_or(f64::INFINITY, Scene::size);
+    let histories = histories(results, size);
     let residuals = residuals(results);
     let data = Data { scene: scene.as_ref(), histories: &histories, residuals: residuals.as_ref() };
     let title = results.title();
@@ -110,6 +111,7 @@ fn context(results: &Results) -> Context<'_> {
         bodies: names.collect(),
         units: results.summary().and_then(|s| s.units.as_ref()),
         carries: carries.map_or(Carried::Pressure, |c| c.carries),
+        time: results.closest(),
     }
 }
 
@@ -117,7 +119,7 @@ fn context(results: &Results) -> Context<'_> {
 fn view(scene: Option<&Scene>, pictures: &[Picture]) -> String {
     let main = pictures.first().map_or(String::new(), |p| p.html.clone());
     let Some(scene) = scene else {
-        return if main.is_empty() { String::new() } else { section("view", "View", &main) };
+        return if main.is_empty() { String::new() } else { section("view", "Picture", &main) };
     };
     let notes: String = scene.notes.iter().map(|n| format!("<p class=\"note\">{}</p>", prose(n))).collect();
     let none = "<p class=\"note\">This browser shows no WebGL, and the run stored no pictures.</p>";

@@ -47,7 +47,7 @@ pub struct Names {
 const STRESS: &str = "stress_xx_yy_zz_xy_yz_xz";
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// More arrows than this hide each other.
-const ARROWS: usize = 300;
+const ARROWS: usize = 60;
 
 impl Piece {
     /// Where a point is now.

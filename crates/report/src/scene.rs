@@ -15,7 +15,7 @@ use std::path::Path;
 /// What the arrays of a view may take in a page, in bytes.
 const ROOM: usize = 2_700_000;
 /// The largest traction of a contact is drawn as an arrow of this part of the extent of the bodies.
-const LONGEST: f64 = 0.15;
+const LONGEST: f64 = 0.1;
 /// Deflections of a membrane are drawn at least this high, as a part of its width.
 const HIGH: f64 = 0.16;
 /// Displacements that nothing stops are drawn at least this large, as a part of the extent of the bodies.
@@ -36,6 +36,8 @@ pub struct Scene {
     /// Corners of what the view fits.
     pub low: [f64; 3],
     pub high: [f64; 3],
+    /// Which state is seen first.
+    pub first: usize,
     /// From where it is seen first.
     pub from: [f64; 3],
     /// How many times larger deflections or displacements are drawn at first.
@@ -73,6 +75,8 @@ pub struct Field {
     pub name: String,
     pub label: String,
     pub unit: String,
+    /// Whether a reader wants to see it first.
+    pub first: bool,
     /// Ends of the scale of colours.
     pub range: [f64; 2],
     /// Least and largest value.
@@ -93,6 +97,15 @@ pub struct Context<'a> {
     pub bodies: Vec<String>,
     pub units: Option<&'a UnitNames>,
     pub carries: Carried,
+    /// The time that is seen first; the last one if left out.
+    pub time: Option<f64>,
+}
+
+impl Scene {
+    /// The extent of what the view fits.
+    pub fn size(&self) -> f64 {
+        (0..3).map(|k| (self.high[k] - self.low[k]).powi(2)).sum::<f64>().sqrt()
+    }
 }
 
 /// The view of a folder; none where nothing can be drawn.
@@ -206,7 +219,8 @@ fn fields(frames: &[Vec<Piece>], detail: &Detail, context: &Context) -> Vec<Fiel
             };
             // Sizes begin at zero, and colours do not tell the least from zero where it is nearly there.
             let range = [if bottom > 0.0 && bottom < 0.5 * top { 0.0 } else { bottom }, top];
-            Some(Field { name: name.into(), label: named.label, unit: named.unit, range, ends })
+            let first = WANTED[..WANTED.len() - 1].contains(&name);
+            Some(Field { name: name.into(), label: named.label, unit: named.unit, first, range, ends })
         })
         .collect();
     let rank = |f: &Field| WANTED.iter().position(|w| *w == f.name).unwrap_or(WANTED.len());
@@ -259,6 +273,10 @@ fn pack(all: &[f64], frames: &[Vec<Piece>], detail: &Detail, context: &Context, 
         }
     }
     view(&mut scene, frames);
+    let last = scene.times.len() - 1;
+    let distance = |k: &usize| (scene.times[*k] - context.time.unwrap_or(f64::INFINITY)).abs();
+    let nearest = (0..=last).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    scene.first = nearest.filter(|_| context.time.is_some()).unwrap_or(last);
     scene
 }
 

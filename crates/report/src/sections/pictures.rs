@@ -14,7 +14,6 @@ const MAIN: usize = 1_400_000;
 /// A picture as HTML; the first is the main one.
 pub struct Picture {
     pub html: String,
-    pub name: String,
 }
 
 /// The pictures of a folder that find room, the main one first, and how many did not.
@@ -55,7 +54,6 @@ pub fn pictures(results: &Results) -> (Vec<Picture>, usize) {
                 escaped(&title),
                 BASE64_STANDARD.encode(&bytes)
             ),
-            name,
         });
     }
     (out, left)

@@ -2,7 +2,7 @@
 
 use crate::folder::{Results, Told};
 use crate::html::{escaped, prose};
-use signorini::output::figure::{figure, told};
+use signorini::output::figure::figure;
 use signorini::report::{Reason, StepReport, Summary};
 use signorini_audit::{Outcome, Verdict};
 
@@ -122,14 +122,15 @@ fn badges(steps: &[StepReport], unit: Option<&str>, converged: bool) -> Vec<Badg
     let done = steps.iter().filter(|s| s.converged).count();
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     out.push(match steps.iter().find(|s| !s.converged) {
-        _ if steps.is_empty() => ("Converged", Grade::Bad, "no increment".into()),
+        _ if steps.is_empty() => ("Converged", Grade::Doubt, "no increment".into()),
         None if converged => ("Converged", Grade::Good, count(done, "increment")),
         None => ("Converged", Grade::Doubt, format!("{}, then it stopped", count(done, "increment"))),
         Some(bad) => {
             let word = reason(bad.reason).replace('_', " ");
+            let was_stopped = matches!(bad.reason, Reason::Interrupted | Reason::LimitReached);
             (
                 "Converged",
-                Grade::Bad,
+                if was_stopped { Grade::Doubt } else { Grade::Bad },
                 format!("{}, then {word} at t = {}", count(done, "increment"), figure(bad.time, None)),
             )
         }
@@ -143,8 +144,11 @@ fn badges(steps: &[StepReport], unit: Option<&str>, converged: bool) -> Vec<Badg
     if let Some(depth) = depths().reduce(f64::max) {
         let found: Vec<_> = shown().flat_map(|s| &s.audit).collect();
         let refused = found.iter().any(|f| f.check == signorini_audit::Check::Gaps && f.outcome == Outcome::Refused);
-        let text =
-            if depth <= 0.0 { "none".into() } else { format!("up to {}", told(depth, None, unit.unwrap_or(""))) };
+        let text = if depth <= 0.0 {
+            "none".into()
+        } else {
+            format!("at most {depth:.0e} {}", unit.unwrap_or("")).trim_end().to_string()
+        };
         out.push(("Penetration", if refused { Grade::Bad } else { Grade::Good }, text));
     }
     let findings: Vec<_> = steps.iter().flat_map(|s| &s.audit).collect();

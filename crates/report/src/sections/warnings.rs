@@ -16,6 +16,7 @@ pub fn warnings(results: &Results) -> String {
     };
     let mut lines: Vec<String> = Vec::new();
     let mut seen: Vec<String> = Vec::new();
+    let mut told: Vec<&str> = Vec::new();
     let findings = results.steps().iter().flat_map(|s| s.audit.iter().map(move |f| (s.time, f)));
     for (time, finding) in findings.filter(|(_, f)| f.outcome != Outcome::Fine) {
         // What holds for many increments is told of the first.
@@ -24,12 +25,15 @@ pub fn warnings(results: &Results) -> String {
             continue;
         }
         seen.push(about);
+        told.push(&finding.message);
         let class = if finding.outcome == Outcome::Refused { "bad" } else { "doubt" };
-        let remedy = finding.remedy.as_ref().map_or(String::new(), |r| format!(" <em>{}</em>", prose(r)));
+        let remedy = finding.remedy.as_ref().map_or(String::new(), |r| format!(" <em>{}</em>", prose(&sentence(r))));
         let text = sentence(&finding.message);
         lines.push(format!("<li class=\"{class}\">{}{}{remedy}</li>", prose(&text), place(Some(time), finding.place)));
     }
-    for warning in results.warnings() {
+    // Some findings are warnings too.
+    let others = results.warnings().into_iter().filter(|w| !told.contains(&w.message.as_str()));
+    for warning in others {
         let text = sentence(&warning.message);
         lines.push(format!("<li class=\"doubt\">{}{}</li>", prose(&text), place(warning.time, warning.at)));
     }

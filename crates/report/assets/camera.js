@@ -52,15 +52,15 @@ class Camera {
   }
 
   /**
-   * Shows points, with room beside them, and lists of others where that makes them smaller by at most a factor. `aspect` is
+   * Shows points, with room beside them, and others where that makes them smaller by at most a factor each. `aspect` is
    * width over height, `free` the part of the width that nothing covers.
    */
-  fit(points, others, most, aspect, free) {
+  fit(points, others, aspect, free) {
     const needed = (ends) => Math.max(ends[1][1] - ends[1][0], (ends[0][1] - ends[0][0]) / (aspect * free));
     const own = this.ends(points);
     const joined = (a, b) => a.map(([low, high], k) => [Math.min(low, b[k][0]), Math.max(high, b[k][1])]);
     let ends = own, all = own;
-    for (const list of others.filter((list) => list.length > 0)) {
+    for (const { points: list, most } of others.filter((o) => o.points.length > 0)) {
       const wider = joined(ends, this.ends(list));
       all = joined(all, wider);
       if (needed(wider) <= most * needed(own)) ends = wider;

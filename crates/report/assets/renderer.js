@@ -2,9 +2,10 @@
 
 const SURFACE_POINT = `#version 300 es
 in vec3 at; in vec3 normal; in float value;
-uniform mat4 view;
+uniform mat4 view; uniform vec3 towards;
 out vec3 place; out vec3 smoothed; out float shownValue;
-void main() { place = at; smoothed = normal; shownValue = value; gl_Position = view * vec4(at, 1.0); }`;
+// Normals look to the eye, whichever way triangles are turned.
+void main() { place = at; smoothed = dot(normal, towards) < 0.0 ? -normal : normal; shownValue = value; gl_Position = view * vec4(at, 1.0); }`;
 
 // Where faces meet at an angle they are drawn flat, elsewhere smooth. Values that are no numbers have the colour of the body.
 const SURFACE_COLOUR = `#version 300 es
@@ -19,7 +20,7 @@ void main() {
   if (dot(face, towards) < 0.0) face = -face;
   vec3 n = normalize(smoothed);
   if (dot(n, towards) < 0.0) n = -n;
-  if (!(dot(n, face) > crease)) n = face;
+  if (crease > -1.0 && !(dot(n, face) > crease)) n = face;
   float shade = isFlat ? 1.0 : 0.52 + 0.48 * max(dot(n, light), 0.0);
   vec3 own = colour.rgb;
   if (coloured > 0.0 && shownValue > -1e29) {

@@ -282,12 +282,26 @@ class Viewer {
         owners[k] = first.get(key);
       }
     }
-    const sums = new Float32Array(at.length);
+    let sums = new Float32Array(at.length);
+    const add = (to, point, n) => {
+      const own = 3 * owners[point];
+      // Triangles may be seen from either side.
+      const side = to[own] * n[0] + to[own + 1] * n[1] + to[own + 2] * n[2] < 0 ? -1 : 1;
+      for (let i = 0; i < 3; i++) to[own + i] += side * n[i];
+    };
     const p = (k, i) => at[3 * triangles[k] + i];
     for (let k = 0; k < triangles.length; k += 3) {
       const [u, v] = [1, 2].map((c) => [0, 1, 2].map((i) => p(k + c, i) - p(k, i)));
-      const n = cross(u, v);
-      for (let c = 0; c < 3; c++) for (let i = 0; i < 3; i++) sums[3 * owners[triangles[k + c]] + i] += n[i];
+      for (let c = 0; c < 3; c++) add(sums, triangles[k + c], cross(u, v));
+    }
+    if (joins) {
+      // Points of slivers take the normals of their neighbours.
+      const wider = sums.slice();
+      const normal = (point) => [0, 1, 2].map((i) => sums[3 * owners[point] + i]);
+      for (let k = 0; k < triangles.length; k++) {
+        for (const other of [k - (k % 3), k - (k % 3) + 1, k - (k % 3) + 2]) add(wider, triangles[k], normal(triangles[other]));
+      }
+      sums = wider;
     }
     return sums.map((_, k) => sums[3 * owners[Math.floor(k / 3)] + (k % 3)]);
   }
@@ -357,11 +371,11 @@ class Viewer {
     const bar = this.field >= 0 && !byId("bar").hidden ? byId("bar").offsetWidth + 24 : 0;
     const free = 1 - bar / (this.canvas.clientWidth || 800);
     const own = this.points(bodies.length > 0 ? bodies : this.drawn);
-    const others = [...of("arrows"), ...of("rigid")].map((part) => this.points([part]));
-    if (this.scene.times.length > 1) others.push(corners);
     // A rope or a path is shown with what it lies on.
-    const most = of("solid", "membrane").length > 0 ? 1.4 : 2.2;
-    this.camera.fit(own.length > 1 ? own : corners, others, most, this.aspect(), free);
+    const most = bodies.length > of("solid", "membrane").length ? 2.5 : 1.4;
+    const others = [...of("arrows"), ...of("rigid")].map((part) => ({ points: this.points([part]), most }));
+    if (this.scene.times.length > 1) others.push({ points: corners, most: 1.4 });
+    this.camera.fit(own.length > 1 ? own : corners, others, this.aspect(), free);
   }
 
   aspect() {

@@ -76,6 +76,16 @@ impl Source {
 
 /// Adds the files of a collection, those of one name together.
 fn add(folder: &Path, collection: &Path, role: Role, out: &mut Vec<Source>) {
+    let first = out.len();
+    add_files(folder, collection, role, out);
+    // Rigid bodies that rest are stored once.
+    let is_at_rest = |source: &Source| source.files.len() == 1 && collection.ends_with("bodies.pvd");
+    for source in out[first..].iter_mut().filter(|s| is_at_rest(s)) {
+        source.files[0].0 = None;
+    }
+}
+
+fn add_files(folder: &Path, collection: &Path, role: Role, out: &mut Vec<Source>) {
     let Ok(text) = std::fs::read_to_string(collection) else { return };
     for entry in text.split("<DataSet ").skip(1) {
         let (Some(time), Some(file)) = (attribute(entry, "timestep"), attribute(entry, "file")) else { continue };

@@ -26,7 +26,7 @@ def test_a_result_in_memory_becomes_a_page(name, wanted, tmp_path):
     path = result.report(tmp_path / "page.html")
     html = path.read_text(encoding="utf-8")
     assert isinstance(path, pathlib.Path) and path == tmp_path / "page.html"
-    assert result.verdict.split()[0] in html and html.endswith("</html>\n")
+    assert result.verdict.split()[0].strip("`") in html and html.endswith("</html>\n")
     found = looks(html)
     assert {look for _, look in wanted} <= {look for _, look in found}, found
     names = {part for part, look in found if look in ("solid", "membrane", "curve")}

@@ -1,10 +1,11 @@
-// The view: bodies at a time, colours of a field, a cut, and the controls beside it.
+// The view: bodies at a time, colours of a field, a cut.
 
+/** Stands for values that are no numbers, in the memory of the graphics too. */
 const NOTHING = -1e30;
-const byId = (id) => document.getElementById(id);
 
-class Viewer {
+class Viewer extends Controls {
   constructor(scene) {
+    super();
     this.scene = scene;
     this.canvas = byId("canvas");
     this.renderer = new Renderer(this.canvas);
@@ -74,142 +75,6 @@ class Viewer {
     return matchMedia("(prefers-color-scheme: dark)").matches;
   }
 
-  // --- controls ---
-
-  setControls() {
-    const { times, fields, parts, magnified, plane } = this.scene;
-    const time = byId("time");
-    time.max = times.length - 1;
-    time.value = this.frame;
-    byId("time-control").hidden = times.length < 2;
-    time.addEventListener("input", () => this.show(Number(time.value)));
-    byId("play").addEventListener("click", () => this.play());
-    const field = byId("field");
-    const options = [["-1", "bodies"], ...fields.map((f, k) => [String(k), f.label])];
-    field.append(...options.map(([value, text]) => new Option(text, value)));
-    field.value = String(this.field);
-    field.addEventListener("change", () => { this.field = Number(field.value); this.show(this.frame); });
-    this.setMagnify(magnified);
-    this.setCut(plane);
-    const edges = byId("edges");
-    edges.checked = this.edges;
-    edges.addEventListener("change", () => { this.edges = edges.checked; this.draw(); });
-    byId("looks").hidden = plane !== "space";
-    const looks = { x: [1, 0, 0], y: [0, -1, 0], z: [0, 0, 1] };
-    for (const button of byId("looks").querySelectorAll("button")) {
-      if (plane !== "space" && button.dataset.look !== "home") button.hidden = true;
-      button.addEventListener("click", () => {
-        this.camera.look(looks[button.dataset.look] ?? this.scene.from);
-        if (button.dataset.look === "z") { this.camera.around = -Math.PI / 2; this.camera.turn(0, 0); }
-        this.fit();
-        this.draw();
-      });
-    }
-    const words = { rigid: "rigid", contact: "contact surface", outline: "edge of the contact", arrows: "contact forces", pair: "" };
-    parts.forEach((part, number) => {
-      const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: !this.hidden.has(number) });
-      box.addEventListener("change", () => {
-        this.hidden[box.checked ? "delete" : "add"](number);
-        this.draw();
-      });
-      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
-      swatch.style.background = `rgb(${this.colours(part)})`;
-      const label = document.createElement("label");
-      const kind = Object.assign(document.createElement("small"), { textContent: words[part.look] ?? "" });
-      label.append(box, swatch, document.createTextNode(part.look === "outline" && part.name === "contact" ? "" : part.name), kind);
-      byId("parts").append(label);
-    });
-  }
-
-  setMagnify(magnified) {
-    byId("magnify-control").hidden = magnified === "nothing";
-    byId("magnify-label").textContent = magnified === "deflections" ? "Heights" : "Motion";
-    const factors = [...new Set([1, 2, 5, 10, 20, 50, 100, 1000, this.magnify])].sort((a, b) => a - b);
-    const shownFactors = factors.filter((f) => f <= 20 * this.scene.magnify || f <= 10);
-    byId("magnify").append(...shownFactors.map((f) => new Option(f === 1 ? "to scale" : `× ${f}`, f)));
-    byId("magnify").value = String(this.magnify);
-    byId("magnify").addEventListener("change", () => {
-      this.magnify = Number(byId("magnify").value);
-      this.isFitted = false;
-      this.show(this.frame);
-    });
-  }
-
-  setCut(plane) {
-    const cut = byId("cut"), place = byId("cut-place");
-    if (plane === "xy") cut.options[3].remove();
-    if (plane === "xz") byId("cut-control").hidden = true;
-    const change = () => {
-      this.cut = { axis: cut.value, place: place.value / 1000 };
-      place.disabled = cut.value === "";
-      this.drawCut();
-    };
-    cut.addEventListener("change", change);
-    place.addEventListener("input", change);
-  }
-
-  setPointer() {
-    const pointers = new Map();
-    const canvas = this.canvas;
-    canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); pointers.set(e.pointerId, e); });
-    const end = (e) => pointers.delete(e.pointerId);
-    canvas.addEventListener("pointerup", end);
-    canvas.addEventListener("pointercancel", end);
-    canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-    canvas.addEventListener("pointermove", (e) => {
-      const before = pointers.get(e.pointerId);
-      if (!before) return;
-      const [x, y] = [(e.clientX - before.clientX) / canvas.clientHeight, (e.clientY - before.clientY) / canvas.clientHeight];
-      if (pointers.size === 2) {
-        const other = [...pointers.values()].find((p) => p.pointerId !== e.pointerId);
-        const apart = (p) => Math.hypot(p.clientX - other.clientX, p.clientY - other.clientY) || 1;
-        this.camera.zoom(apart(e) / apart(before));
-        this.camera.move(x / 2, -y / 2);
-      } else if (e.shiftKey || e.buttons !== 1 || this.scene.plane !== "space") this.camera.move(x, -y);
-      else this.camera.turn(-3 * x, 3 * y);
-      pointers.set(e.pointerId, e);
-      this.draw();
-    });
-    canvas.addEventListener("wheel", (e) => {
-      // Only where the picture was chosen: else the page moves.
-      if (document.activeElement !== canvas && !e.ctrlKey) return;
-      e.preventDefault();
-      this.camera.zoom(Math.exp(-0.0015 * e.deltaY));
-      this.draw();
-    }, { passive: false });
-    canvas.addEventListener("pointerdown", () => canvas.focus());
-  }
-
-  setKeys() {
-    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    this.canvas.addEventListener("keydown", (e) => {
-      const [x, y] = step[e.key] ?? [0, 0];
-      if (e.ctrlKey || e.metaKey || e.altKey) return;
-      if (step[e.key] && (e.shiftKey || this.scene.plane !== "space")) this.camera.move(0.06 * x, 0.06 * y);
-      else if (step[e.key]) this.camera.turn(0.12 * x, 0.12 * y);
-      else if (e.key === "+" || e.key === "=") this.camera.zoom(1.2);
-      else if (e.key === "-") this.camera.zoom(1 / 1.2);
-      else if (e.key === "Home") { this.camera.look(this.scene.from); this.fit(); }
-      else if (e.key === "," || e.key === ".") return this.show(this.frame + (e.key === "." ? 1 : -1));
-      else return;
-      e.preventDefault();
-      this.draw();
-    });
-  }
-
-  play() {
-    const button = byId("play");
-    const stop = () => { clearInterval(this.timer); this.timer = undefined; button.textContent = "▶"; button.ariaLabel = "Play"; };
-    if (this.timer) return stop();
-    button.textContent = "❚❚";
-    button.ariaLabel = "Pause";
-    const count = this.scene.times.length;
-    const step = async () => { await this.ready; this.show((this.frame + 1) % count); };
-    this.timer = setInterval(step, Math.min(500, Math.max(60, 5000 / count)));
-  }
-
-  // --- what is seen ---
-
   /** Shows a state. */
   show(frame) {
     this.frame = Math.min(Math.max(frame, 0), this.scene.times.length - 1);
@@ -270,42 +135,6 @@ class Viewer {
     return part.look === "rigid" && !this.scene.parts.some((p) => p.look === "pair");
   }
 
-  /** Normals of points: means over the triangles, where wanted of all points that are hardly apart. */
-  normals(at, triangles, joins) {
-    const owners = new Uint32Array(at.length / 3).map((_, k) => k);
-    if (joins) {
-      const size = at.reduce((m, v) => Math.max(m, Math.abs(v)), 0) / 500 || 1;
-      const first = new Map();
-      for (let k = 0; k < owners.length; k++) {
-        const key = [0, 1, 2].reduce((key, i) => key * 2048 + Math.round(at[3 * k + i] / size) + 1024, 0);
-        if (!first.has(key)) first.set(key, k);
-        owners[k] = first.get(key);
-      }
-    }
-    let sums = new Float32Array(at.length);
-    const add = (to, point, n) => {
-      const own = 3 * owners[point];
-      // Triangles may be seen from either side.
-      const side = to[own] * n[0] + to[own + 1] * n[1] + to[own + 2] * n[2] < 0 ? -1 : 1;
-      for (let i = 0; i < 3; i++) to[own + i] += side * n[i];
-    };
-    const p = (k, i) => at[3 * triangles[k] + i];
-    for (let k = 0; k < triangles.length; k += 3) {
-      const [u, v] = [1, 2].map((c) => [0, 1, 2].map((i) => p(k + c, i) - p(k, i)));
-      for (let c = 0; c < 3; c++) add(sums, triangles[k + c], cross(u, v));
-    }
-    if (joins) {
-      // Points of slivers take the normals of their neighbours.
-      const wider = sums.slice();
-      const normal = (point) => [0, 1, 2].map((i) => sums[3 * owners[point] + i]);
-      for (let k = 0; k < triangles.length; k++) {
-        for (const other of [k - (k % 3), k - (k % 3) + 1, k - (k % 3) + 2]) add(wider, triangles[k], normal(triangles[other]));
-      }
-      sums = wider;
-    }
-    return sums.map((_, k) => sums[3 * owners[Math.floor(k / 3)] + (k % 3)]);
-  }
-
   /** What is drawn of a part. */
   meshes({ part, at, values, isColoured, triangles, edges, lines }) {
     const renderer = this.renderer, out = [];
@@ -314,7 +143,7 @@ class Viewer {
     const ink = () => (this.isDark() ? [220, 224, 230] : [40, 44, 50]);
     const isLine = part.look === "rigid" && triangles.length === 0;
     if (triangles.length > 0) {
-      const mesh = renderer.addSurface(at, this.normals(at, triangles, this.isSampled(part)), values, triangles);
+      const mesh = renderer.addSurface(at, normals(at, triangles, this.isSampled(part)), values, triangles);
       // A contact surface lies on its body; where colours show what the body does not have, the body lets it be seen.
       const behind = { rigid: 3, solid: 1, membrane: 1, contact: 0 }[part.look] ?? 1;
       // A contact surface without colours would hide the body.

@@ -10,7 +10,7 @@ pub enum ReportError {
     #[error("there is no folder `{0}`")]
     Missing(PathBuf),
     /// It is a file.
-    #[error("`{0}` is not a folder")]
+    #[error("`{0}` is neither a folder of results nor a file of closest points")]
     NotAFolder(PathBuf),
     /// No run has written there.
     #[error("the folder `{0}` does not contain the results of a run")]

@@ -19,6 +19,8 @@ pub enum Told {
     Unfinished(Unfinished),
     /// The summary of a fit, or of a scene of moving bodies.
     Other(Value),
+    /// Answers of closest points, by the names of their queries.
+    Answers(Vec<(String, Value)>),
 }
 
 /// What a run without a summary has stored.
@@ -59,7 +61,7 @@ impl Results {
             return Err(ReportError::Missing(path.to_path_buf()));
         }
         if !path.is_dir() {
-            return Err(ReportError::NotAFolder(path.to_path_buf()));
+            return answers(path).ok_or_else(|| ReportError::NotAFolder(path.to_path_buf()));
         }
         if !KNOWN.iter().any(|name| path.join(name).is_file()) {
             return Err(ReportError::NotResults(path.to_path_buf()));
@@ -99,7 +101,7 @@ impl Results {
         match &self.told {
             Told::Run(summary) => &summary.steps,
             Told::Unfinished(found) => &found.steps,
-            Told::Other(_) => &[],
+            Told::Other(_) | Told::Answers(_) => &[],
         }
     }
 
@@ -108,6 +110,7 @@ impl Results {
         match &self.told {
             Told::Run(summary) => summary.warnings.clone(),
             Told::Unfinished(found) => found.warnings.clone(),
+            Told::Answers(_) => Vec::new(),
             Told::Other(value) => {
                 let list = value["warnings"].as_array().into_iter().flatten();
                 list.filter_map(|w| w.as_str()).map(Warning::from).collect()
@@ -132,6 +135,7 @@ impl Results {
         let told = match &self.told {
             Told::Run(summary) => Some(summary.case.clone()),
             Told::Unfinished(_) => None,
+            Told::Answers(_) => Some("Closest points".to_string()),
             Told::Other(value) => value["case"].as_str().or(value["title"].as_str()).map(String::from),
         };
         let name = || self.path.file_name().map_or("Results".into(), |name| name.to_string_lossy().into_owned());
@@ -151,6 +155,17 @@ impl Results {
     pub fn text(&self, name: &str) -> Option<String> {
         std::fs::read_to_string(self.path.join(name)).ok()
     }
+}
+
+/// The answers of `signorini closest`; none for any other file.
+fn answers(path: &Path) -> Option<Results> {
+    let table: serde_json::Map<String, Value> = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+    let is_answer = |v: &Value| ["distance", "error"].iter().any(|key| v.get(key).is_some());
+    if table.is_empty() || !table.values().all(is_answer) {
+        return None;
+    }
+    let told = Told::Answers(table.into_iter().collect());
+    Some(Results { path: path.to_path_buf(), told, case: None, iterations: Vec::new(), version: None })
 }
 
 /// The content of a file; none where there is none.

@@ -25,7 +25,7 @@ use page::{Purpose, page};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The page of a folder of results.
+/// The page of a folder of results, or of a file of answers of closest points.
 ///
 /// # Errors
 /// A path without results of a run, or with ones that are damaged.
@@ -33,13 +33,14 @@ pub fn report(folder: &Path) -> Result<String, ReportError> {
     Ok(page(&Results::read(folder)?, Purpose::File))
 }
 
-/// Writes the page of a folder, whole or not at all: into the folder as `report.html`, or to another place. Returns where.
+/// Writes the page of a folder, whole or not at all: into the folder as `report.html`, beside a file of answers, or to another
+/// place. Returns where.
 ///
 /// # Errors
 /// Those of [`report`], and a file that cannot be written.
 pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
     let html = report(folder)?;
-    let path = output.map_or_else(|| folder.join("report.html"), Path::to_path_buf);
+    let path = output.map_or_else(|| beside(folder), Path::to_path_buf);
     let mut part = path.clone().into_os_string();
     part.push(".part");
     let store = || -> std::io::Result<()> {
@@ -55,4 +56,9 @@ pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportErro
             Err(ReportError::Write { path, source })
         }
     }
+}
+
+/// Where a page is stored if nothing else is said.
+fn beside(results: &Path) -> PathBuf {
+    if results.is_dir() { results.join("report.html") } else { results.with_extension("html") }
 }

@@ -1,23 +1,25 @@
 //! A page of its sections, styles and scripts. Nothing in it is loaded from elsewhere.
 
 use crate::charts::{Chart, histories, residuals};
-use crate::folder::Results;
+use crate::folder::{Results, Told};
 use crate::html::{escaped, json, prose, section};
-use crate::scene::{Context, Scene, scene};
+use crate::scene::{Context, Scene, of_frames, scene};
 use crate::sections::pictures::{Picture, pictures};
-use crate::sections::{asked, convergence, environment, others, results, verdict, warnings};
+use crate::sections::{answers, asked, convergence, environment, others, results, verdict, warnings};
 use serde::Serialize;
 use signorini::report::Carried;
 
 const PAGE: &str = include_str!("../assets/page.html");
 const STYLE: &str = concat!(include_str!("../assets/libraries/uPlot.min.css"), include_str!("../assets/page.css"));
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("../assets/libraries/uPlot.iife.min.js"),
     include_str!("../assets/colours.js"),
     include_str!("../assets/arrays.js"),
     include_str!("../assets/camera.js"),
     include_str!("../assets/renderer.js"),
+    include_str!("../assets/normals.js"),
     include_str!("../assets/cut.js"),
+    include_str!("../assets/controls.js"),
     include_str!("../assets/viewer.js"),
     include_str!("../assets/charts.js"),
 ];
@@ -43,7 +45,10 @@ pub enum Purpose {
 /// The whole page of a folder.
 pub fn page(results: &Results, purpose: Purpose) -> String {
     let context = context(results);
-    let scene = scene(&results.path, &context);
+    let scene = match &results.told {
+        Told::Answers(list) => of_frames(&[0.0], vec![vec![answers::pairs(list)]], Vec::new(), &context),
+        _ => scene(&results.path, &context),
+    };
     let (pictures, left) = pictures(results);
     let size = scene.as_ref().map_or(f64::INFINITY, Scene::size);
     let histories = histories(results, size);

@@ -59,7 +59,8 @@ impl Piece {
         }
     }
 
-    fn new(name: &str, look: Look, points: Vec<[f64; 3]>, topology: Topology) -> Self {
+    /// Points and what joins them.
+    pub fn new(name: &str, look: Look, points: Vec<[f64; 3]>, topology: Topology) -> Self {
         let (displacement, fields, tractions) = (None, Vec::new(), Vec::new());
         Self { name: name.into(), look, points, displacement, topology, fields, tractions }
     }

@@ -122,6 +122,16 @@ pub fn scene(folder: &Path, context: &Context) -> Option<Scene> {
         notes.extend(told.into_iter().filter(|_| notes.len() < 4).collect::<Vec<String>>());
         frames.push(pieces);
     }
+    of_frames(&times, frames, notes, context)
+}
+
+/// The view of pieces at some times; none without points.
+pub fn of_frames(
+    times: &[f64],
+    mut frames: Vec<Vec<Piece>>,
+    mut notes: Vec<String>,
+    context: &Context,
+) -> Option<Scene> {
     if frames.iter().flatten().all(|piece| piece.points.is_empty()) {
         return None;
     }
@@ -129,7 +139,7 @@ pub fn scene(folder: &Path, context: &Context) -> Option<Scene> {
     grow_arrows(&mut frames, extent.size());
     let mut packed = None;
     for detail in LEVELS {
-        let scene = pack(&times, &frames, &detail, context, &extent);
+        let scene = pack(times, &frames, &detail, context, &extent);
         let fits = scene.arrays.size() <= ROOM;
         notes.extend(detail.note(times.len()).filter(|_| fits));
         packed = Some(scene);

@@ -134,6 +134,19 @@ fn folders_that_are_none_are_told() {
 }
 
 #[test]
+fn answers_of_closest_points_become_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("answers.json");
+    let answer = r#"{"first": {"distance": 2.0, "xa": [0, 0, 2], "xb": [0, 0, 0], "feature_a": "point", "feature_b": "vertex",
+        "unique": true, "uniqueness": "unique", "certified": true}, "wrong": {"error": "b.o: missing", "line": 1}}"#;
+    std::fs::write(&path, answer).unwrap();
+    let html = std::fs::read_to_string(write(&path, None).unwrap()).unwrap();
+    is_sound(&html);
+    assert!(html.contains("2 queries: 1 wrong"));
+    assert_eq!(looks(&data(&html)), ["pair"]);
+}
+
+#[test]
 fn damaged_files_of_fields_are_told_in_the_page() {
     let folder = tempfile::tempdir().unwrap();
     run_case("patch_test", &[], folder.path());

@@ -110,7 +110,7 @@ enum Command {
         after_help = "Examples:\n  signorini report out\n  signorini report out -o hertz.html\n\nThe folder is one that signorini run, fit or gallery run has written. Failed and interrupted\nruns are shown as far as they came."
     )]
     Report {
-        /// The folder of the results
+        /// The folder of the results, or a JSON file of signorini closest
         folder: PathBuf,
         /// The file (default: report.html in the folder)
         #[arg(short, long, value_name = "FILE")]

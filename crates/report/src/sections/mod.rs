@@ -1,5 +1,6 @@
 //! The sections of a page, as HTML.
 
+pub mod answers;
 pub mod asked;
 pub mod convergence;
 pub mod environment;

@@ -13,7 +13,7 @@ pub fn others(results: &Results) -> String {
         Told::Run(summary) => paths(summary),
         Told::Other(value) if value.get("adhesion_energy").is_some() => fit(value),
         Told::Other(value) => scene(value),
-        Told::Unfinished(_) => String::new(),
+        Told::Unfinished(_) | Told::Answers(_) => String::new(),
     };
     section("found", "Results", &body)
 }

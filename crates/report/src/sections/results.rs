@@ -15,6 +15,7 @@ pub fn results(results: &Results) -> String {
         Told::Unfinished(found) => {
             of_steps(&found.steps, None) + &events(&found.events, None) + &increments_without_units(&found.steps)
         }
+        Told::Answers(list) => return super::answers::answers(list),
         Told::Other(_) => return String::new(),
     };
     section("results", "Results", &body)

@@ -52,6 +52,11 @@ pub fn verdict(results: &Results) -> String {
                 "The run goes on, or it was stopped before its end. To continue it: `signorini run CASE --resume`.";
             (Grade::Doubt, "Not finished".to_string(), vec![text, help.to_string()], badges(&found.steps, None, true))
         }
+        Told::Answers(list) => {
+            let (is_good, text) = super::answers::sentence(list);
+            let (grade, short) = if is_good { (Grade::Good, "Done") } else { (Grade::Doubt, "Not all answered") };
+            (grade, short.to_string(), vec![text], Vec::new())
+        }
         Told::Other(value) => {
             let converged = value["converged"].as_bool().unwrap_or(true);
             let grade = if converged { Grade::Good } else { Grade::Bad };

@@ -13,23 +13,28 @@ function normals(at, triangles, joins) {
     }
   }
   let sums = new Float32Array(at.length);
-  const add = (to, point, n) => {
+  // Triangles may be seen from either side.
+  const add = (to, point, x, y, z) => {
     const own = 3 * owners[point];
-    // Triangles may be seen from either side.
-    const side = to[own] * n[0] + to[own + 1] * n[1] + to[own + 2] * n[2] < 0 ? -1 : 1;
-    for (let i = 0; i < 3; i++) to[own + i] += side * n[i];
+    const side = to[own] * x + to[own + 1] * y + to[own + 2] * z < 0 ? -1 : 1;
+    to[own] += side * x;
+    to[own + 1] += side * y;
+    to[own + 2] += side * z;
   };
-  const p = (k, i) => at[3 * triangles[k] + i];
   for (let k = 0; k < triangles.length; k += 3) {
-    const [u, v] = [1, 2].map((c) => [0, 1, 2].map((i) => p(k + c, i) - p(k, i)));
-    for (let c = 0; c < 3; c++) add(sums, triangles[k + c], cross(u, v));
+    const [a, b, c] = [3 * triangles[k], 3 * triangles[k + 1], 3 * triangles[k + 2]];
+    const ux = at[b] - at[a], uy = at[b + 1] - at[a + 1], uz = at[b + 2] - at[a + 2];
+    const vx = at[c] - at[a], vy = at[c + 1] - at[a + 1], vz = at[c + 2] - at[a + 2];
+    for (let i = k; i < k + 3; i++) add(sums, triangles[i], uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
   }
   if (joins) {
     // Points of slivers take the normals of their neighbours.
     const wider = sums.slice();
-    const normal = (point) => [0, 1, 2].map((i) => sums[3 * owners[point] + i]);
     for (let k = 0; k < triangles.length; k++) {
-      for (const other of [k - (k % 3), k - (k % 3) + 1, k - (k % 3) + 2]) add(wider, triangles[k], normal(triangles[other]));
+      for (let i = k - (k % 3), end = i + 3; i < end; i++) {
+        const from = 3 * owners[triangles[i]];
+        add(wider, triangles[k], sums[from], sums[from + 1], sums[from + 2]);
+      }
     }
     sums = wider;
   }

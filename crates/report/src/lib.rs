@@ -17,6 +17,7 @@ mod scene;
 mod sections;
 pub mod serve;
 mod surface;
+mod view;
 mod vtk;
 
 pub use error::ReportError;

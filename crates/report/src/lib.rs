@@ -1,6 +1,6 @@
 //! Results as a page: one HTML file that needs nothing else, of the folder of a run.
 //!
-//! [`report`] reads a folder and returns the page; [`write`] stores it. [`serve`](serve::Server) shows the page of a run
+//! [`report`] reads a folder and returns the page; [`write()`] stores it. [`serve`](serve::Server) shows the page of a run
 //! that goes on.
 
 mod charts;

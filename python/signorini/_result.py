@@ -9,6 +9,7 @@ import io
 import json
 import os
 import pathlib
+import tempfile
 from typing import Any, Dict, Iterator, List, Optional, Union
 
 import numpy as np
@@ -217,10 +218,13 @@ class Result:
     steps: One record per increment, with ``contacts``, ``support_forces``, ``probes`` …
     states: The fields of the increments that `output.every` asks for, the last one included.
     files: Contents of `history.csv` and of the pictures, by name.
+    text, case_text: The text of `summary.json`, and of the case.
     """
 
     def __init__(self, found: dict, folder: Optional[str] = None) -> None:
-        self.summary = Record(json.loads(found["summary"]))
+        self.text: str = found["summary"]
+        self.case_text: str = found.get("case", "")
+        self.summary = Record(json.loads(self.text))
         self.states = [State(table) for table in found["states"]]
         self.files: Dict[str, bytes] = found["files"]
         self.folder = folder
@@ -324,6 +328,30 @@ class Result:
             first = self.summary.get("first_picture")
             return self.pictures.get(first.split("/", 1)[1]) if first else None
         return self.pictures[name]
+
+    def report(self, path: "Union[str, os.PathLike, None]" = None) -> pathlib.Path:
+        """Writes the result as one HTML page that needs no network, and returns the path of the page.
+
+        path: The file; ``report.html`` in the folder of the result if left out, in the current folder for a result in memory.
+
+        Raises OutputError for a page that cannot be written.
+
+        >>> import signorini as sg, tempfile, pathlib
+        >>> result = sg.run(sg.gallery("string"), pictures=False)
+        >>> result.report(pathlib.Path(tempfile.mkdtemp()) / "string.html").name
+        'string.html'
+        """
+        from . import _native
+        from ._report import store
+
+        target = pathlib.Path(path) if path is not None else pathlib.Path(self.folder or ".") / "report.html"
+        if self.folder:
+            _native.report(os.fspath(self.folder), os.fspath(target))
+            return target
+        with tempfile.TemporaryDirectory() as made:
+            store(self, pathlib.Path(made))
+            _native.report(made, os.fspath(target))
+        return target
 
     def to_pyvista(self, state: int = -1) -> Any:
         """The fields of a state as pyvista.MultiBlock: bodies, and contacts called ``contact NAME``.

@@ -49,11 +49,16 @@ pub fn note(printed: Result<(), Error>) {
     }
 }
 
-/// Empties the buffer of standard output; returns the exit status of a command that would end with `code`.
-pub fn finish(code: u8) -> u8 {
+/// Empties the buffer of standard output.
+pub fn flush() {
     if !ended() {
         note(stdout().flush());
     }
+}
+
+/// Empties the buffer of standard output; returns the exit status of a command that would end with `code`.
+pub fn finish(code: u8) -> u8 {
+    flush();
     match FAILURE.get() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => {
             tell!("error: cannot write to standard output: {error}");

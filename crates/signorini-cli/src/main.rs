@@ -7,6 +7,7 @@ mod bar;
 mod begin;
 mod commands;
 mod console;
+mod report;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use console::tell;
@@ -21,6 +22,7 @@ const EXAMPLES: &str = "Examples:
   signorini run case.toml -o out --set loads.press.normal=-0.3
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini fit blister.toml                          adhesion from measurements
+  signorini report out                                one HTML page of the results in ./out
   signorini check case.toml                           check the case and report its size
   signorini new flat_disc                             a new case from a template
   signorini explain iteration_limit                   explain a word of the results
@@ -102,6 +104,26 @@ enum Command {
         /// Report all local minima too
         #[arg(long)]
         local_minima: bool,
+    },
+    /// Write the results of a run as one HTML page, which needs no network
+    #[command(
+        after_help = "Examples:\n  signorini report out\n  signorini report out -o hertz.html\n\nThe folder is one that signorini run, fit or gallery run has written. Failed and interrupted\nruns are shown as far as they came."
+    )]
+    Report {
+        /// The folder of the results, or a JSON file of signorini closest
+        folder: PathBuf,
+        /// The file (default: report.html in the folder)
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Show the results of a run in a browser on this computer, and follow a run that goes on
+    #[command(after_help = "Example:\n  signorini view out")]
+    View {
+        /// The folder of the results
+        folder: PathBuf,
+        /// The port of the loopback address (default: any that is free)
+        #[arg(long, value_name = "PORT", default_value_t = 0, hide_default_value = true)]
+        port: u16,
     },
     /// Create a folder with a new case from a commented template
     #[command(
@@ -242,6 +264,8 @@ fn main() -> ExitCode {
         Command::Closest { queries, to, output, local_minima } => {
             commands::closest(&queries, to.as_deref(), &output, local_minima, json)
         }
+        Command::Report { folder, output } => report::write(&folder, output.as_deref(), json),
+        Command::View { folder, port } => report::view(&folder, port, json),
         Command::New { template, folder } => begin::new(&template, folder, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { summary, markdown } => begin::schema(summary, markdown),

@@ -8,6 +8,7 @@ use signorini::problem::CaseError;
 use signorini::queries::FieldError;
 use signorini::run::RunError;
 use signorini::scene::SceneError;
+use signorini_report::ReportError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why there is no result.
@@ -15,6 +16,7 @@ pub enum Failure {
     Case(Box<CaseError>),
     Output(OutputError),
     Field(FieldError),
+    Report(ReportError),
     /// A fault of ours.
     Internal(String),
 }
@@ -34,6 +36,12 @@ impl From<OutputError> for Failure {
 impl From<FieldError> for Failure {
     fn from(error: FieldError) -> Self {
         Failure::Field(error)
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Failure::Report(error)
     }
 }
 
@@ -107,6 +115,9 @@ impl Failure {
                 errors.getattr("CaseError")?.call((message,), Some(&fields))?
             }
             Failure::Output(error) => errors.getattr("OutputError")?.call1((error.to_string(),))?,
+            Failure::Report(error) => {
+                errors.getattr("OutputError")?.call1((format!("{error}\n  help: {}", error.help()),))?
+            }
             Failure::Internal(message) => errors.getattr("InternalError")?.call1((message,))?,
         };
         Ok(PyErr::from_value(made))

@@ -60,8 +60,9 @@ fn solve<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let stated = Stated::of(name, stated, settings, files)?;
-    let (found, raised) = apart(py, || {
+    let (found, raised, case) = apart(py, || {
         let problem = stated.problem()?;
+        let case = signorini::case::text(&problem);
         let mut told = Told::new(progress);
         let found = if paths::is_of_paths(&problem) {
             let case = PathCase::new(&problem)?;
@@ -72,7 +73,7 @@ fn solve<'py>(
             let (outcome, files) = run::keep(&problem, output.as_deref(), &mut told)?;
             (outcome.summary.to_json(), outcome.states, files)
         };
-        Ok((found, told.into_error()))
+        Ok((found, told.into_error(), case))
     })?;
     if let Some(error) = raised {
         return Err(error);
@@ -80,6 +81,7 @@ fn solve<'py>(
     let (summary, states, files) = found;
     let out = PyDict::new(py);
     out.set_item("summary", summary)?;
+    out.set_item("case", case)?;
     out.set_item("states", results::states(py, &states)?)?;
     out.set_item("files", results::files(py, files)?)?;
     Ok(out)
@@ -161,6 +163,18 @@ fn run_scene<'py>(
     Ok((summary, results::files(py, files)?))
 }
 
+/// Writes the results of a folder as one HTML page.
+///
+/// # Errors
+/// A folder without results, a page that cannot be written.
+#[pyfunction]
+fn report(py: Python<'_>, folder: PathBuf, output: PathBuf) -> PyResult<()> {
+    apart(py, || {
+        signorini_report::write(&folder, Some(&output))?;
+        Ok(())
+    })
+}
+
 /// Whether a text is a scene of moving bodies rather than a problem.
 #[pyfunction]
 fn is_scene(text: &str) -> bool {
@@ -215,7 +229,7 @@ mod _native {
     use super::closest::closest_points;
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
     #[pymodule_export]
-    use super::{check, explain, fit, gallery, is_scene, panic, read, run_scene, schema, set_threads, solve};
+    use super::{check, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

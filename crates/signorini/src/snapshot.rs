@@ -152,10 +152,16 @@ impl<const D: usize> Snapshot<D> {
         if !self.has_obstacles() {
             return fields;
         }
-        fields
+        let fields = fields
             .scalar("gap", self.gap.clone())
             .scalar("contact_pressure", self.pressure.clone())
-            .scalar("contact_status", self.in_contact.iter().map(|c| f64::from(u8::from(*c))).collect())
+            .scalar("contact_status", self.in_contact.iter().map(|c| f64::from(u8::from(*c))).collect());
+        [("floor", &self.floor), ("ceiling", &self.ceiling)].into_iter().fold(fields, |fields, (name, heights)| {
+            match heights {
+                Some(heights) => fields.scalar(name, heights.clone()),
+                None => fields,
+            }
+        })
     }
 
     /// The edges of all zones: closed lines, points in one dimension.

@@ -1,4 +1,5 @@
 //! The tests of the command as one program.
 
 mod closed_output;
+mod reports;
 mod runs;

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub const MARKER: &str = "log.jsonl";
 const FIRST_LINE: &str = "{\"event\":\"signorini\"";
 /// Everything a run writes.
-const OWN: [&str; 20] = [
+const OWN: [&str; 22] = [
     "summary.json",
     "log.jsonl",
     "history.csv",
@@ -30,6 +30,8 @@ const OWN: [&str; 20] = [
     "rigid.pvd",
     "volume",
     "volume.pvd",
+    "fit.csv",
+    "report.html",
 ];
 
 /// Results that could not be written.

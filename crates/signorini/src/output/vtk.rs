@@ -22,6 +22,8 @@ pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Resu
         ("slip", &units.length),
         ("stress_xx_yy_zz_xy_yz_xz", &units.pressure),
         ("von_mises", &units.pressure),
+        ("floor", &units.length),
+        ("ceiling", &units.length),
         ("Points", &units.length),
     ];
     for (name, unit) in of_fields {
@@ -78,6 +80,9 @@ pub fn fields<const D: usize>(
         point.push(scalar("gap", s.gap.clone()));
         point.push(scalar("contact_pressure", s.pressure.clone()));
         point.push(scalar("contact_status", s.in_contact.iter().map(|c| f64::from(u8::from(*c))).collect()));
+    }
+    for (name, heights) in [("floor", &s.floor), ("ceiling", &s.ceiling)] {
+        point.extend(heights.as_ref().map(|heights| scalar(name, heights.clone())));
     }
     let piece = UnstructuredGridPiece {
         points: coordinates(&mesh.points, |_| 0.0).into(),

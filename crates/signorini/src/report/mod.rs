@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_audit::{Answer, Finding};
 use std::collections::BTreeMap;
-pub use table::{history, resultants, table};
+pub use table::{Column, columns, history, resultants, resultants_of, table};
 
 /// Version of the keys of the summary.
 pub const SCHEMA: u32 = 2;

@@ -4,8 +4,31 @@ use super::{Carried, ContactReport, ErrorEstimate, ForceBounds, StepReport, Summ
 use crate::output::figure::{figure, told_vector};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// A column of a table: its heading with the unit, its cells, and whether they are words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    pub heading: String,
+    pub cells: Vec<String>,
+    pub is_of_words: bool,
+}
+
 /// The increments as a table, one line for each contact; the columns of what no increment has are left out.
 pub fn table(summary: &Summary) -> String {
+    let columns = columns(summary);
+    let count = columns.first().map_or(0, |column| column.cells.len());
+    let mut rows: Vec<String> = vec![String::new(); count + 1];
+    for Column { heading, cells, is_of_words } in &columns {
+        let width = cells.iter().chain([heading]).map(|c| c.chars().count()).max().unwrap_or(0);
+        for (row, text) in rows.iter_mut().zip([heading].into_iter().chain(cells)) {
+            // Names stand to the left.
+            *row += &if *is_of_words { format!("  {text:width$}") } else { format!("  {text:>width$}") };
+        }
+    }
+    rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
+}
+
+/// The columns of this table.
+pub fn columns(summary: &Summary) -> Vec<Column> {
     let steps = with_errors(&summary.steps);
     let lines: Vec<(&StepReport, Option<(&str, &ContactReport)>)> = (steps.iter())
         .flat_map(|step| {
@@ -39,7 +62,7 @@ pub fn table(summary: &Summary) -> String {
         ("balance", |_, _| "", |s, _| Some(format!("{:.1e}", s.equilibrium_residual?))),
     ];
     let several = summary.steps.iter().any(|s| s.contacts.len() > 1);
-    let mut rows: Vec<String> = vec![String::new(); lines.len() + 1];
+    let mut found = Vec::new();
     let carried = |line: &Line| line.1.map_or(Carried::Pressure, |(_, c)| c.carries);
     for (title, unit, cell) in columns {
         let cells: Vec<Option<String>> = lines.iter().map(|(s, c)| cell(s, *c)).collect();
@@ -59,15 +82,9 @@ pub fn table(summary: &Summary) -> String {
             (title, _) => title,
         };
         let heading = headed(title, shared.unwrap_or_default());
-        let width = cells.iter().map(|c| c.chars().count()).chain([heading.chars().count()]).max().unwrap_or(0);
-        for (row, text) in
-            rows.iter_mut().zip(std::iter::once(heading.as_str()).chain(cells.iter().map(String::as_str)))
-        {
-            // Names stand to the left.
-            *row += &if title == "contact" { format!("  {text:width$}") } else { format!("  {text:>width$}") };
-        }
+        found.push(Column { heading, cells, is_of_words: title == "contact" });
     }
-    rows.iter().map(|row| format!("{}\n", row.trim_end())).collect()
+    found
 }
 
 /// Bounds as a figure of a table.
@@ -108,10 +125,14 @@ fn headed(title: &str, unit: &str) -> String {
 /// The resultants of the last increment, and where free bodies have come: empty where there are neither moments nor free
 /// bodies.
 pub fn resultants(summary: &Summary) -> String {
-    let Some(step) = summary.steps.last() else { return String::new() };
-    let unit = |of: fn(&UnitNames) -> &String| summary.units.as_ref().map_or("", |u| of(u));
+    summary.steps.last().into_iter().flat_map(|step| resultants_of(step, summary.units.as_ref())).map(aligned).collect()
+}
+
+/// Titles and rows of these tables, of an increment.
+pub fn resultants_of(step: &StepReport, units: Option<&UnitNames>) -> Vec<Vec<[String; 3]>> {
+    let unit = |of: fn(&UnitNames) -> &String| units.map_or("", |u| of(u));
     let vector = |v: &[f64; 3]| told_vector(v, None, "");
-    let mut out = String::new();
+    let mut out = Vec::new();
     if let Some(about) = step.moments_about {
         let contacts = step.contacts.iter().filter_map(|(name, c)| Some((name, &c.force, c.moment.as_ref()?)));
         let supports = step.support_forces.iter().filter_map(|(n, f)| Some((n, f, step.support_moments.get(n)?)));
@@ -125,24 +146,22 @@ pub fn resultants(summary: &Summary) -> String {
         let rows = (supports.map(|(n, f, m)| line(format!("support {n}"), f, m)))
             .chain(loads.map(|(n, f, m)| line(format!("load {n}"), f, m)))
             .chain(contacts.map(|(n, f, m)| line(format!("contact {n}"), f, m)));
-        out += &aligned(titles, rows.collect());
+        out.push(std::iter::once(titles).chain(rows).collect());
     }
     if !step.free_bodies.is_empty() {
         let titles = ["".to_string(), headed("displacement", unit(|u| &u.length)), headed("rotation vector", "rad")];
         let rows = step.free_bodies.iter();
-        let rows =
-            rows.map(|(n, p)| [format!("free body {n}"), vector(&p.displacement), vector(&p.rotation)]).collect();
-        out += &aligned(titles, rows);
+        let rows = rows.map(|(n, p)| [format!("free body {n}"), vector(&p.displacement), vector(&p.rotation)]);
+        out.push(std::iter::once(titles).chain(rows).collect());
     }
     out
 }
 
 /// Columns of text below their titles; nothing without rows.
-fn aligned(titles: [String; 3], rows: Vec<[String; 3]>) -> String {
-    if rows.is_empty() {
+fn aligned(all: Vec<[String; 3]>) -> String {
+    if all.len() < 2 {
         return String::new();
     }
-    let all: Vec<[String; 3]> = std::iter::once(titles).chain(rows).collect();
     let width = |k: usize| all.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
     let widths = [0, 1, 2].map(width);
     let line = |row: &[String; 3]| {

@@ -2,3 +2,4 @@
 
 mod closed_output;
 mod runs;
+mod sweeps;

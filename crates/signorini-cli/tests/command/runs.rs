@@ -4,18 +4,18 @@ use assert_cmd::Command;
 use serde_json::Value;
 use std::path::Path;
 
-fn signorini(folder: &Path) -> Command {
+pub fn signorini(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
     command.current_dir(folder).env("NO_COLOR", "1");
     command
 }
 
-fn example(name: &str) -> String {
+pub fn example(name: &str) -> String {
     let path = format!("{}/../../gallery/{name}/case.toml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(path).expect("a gallery case")
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 

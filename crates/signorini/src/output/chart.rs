@@ -66,7 +66,11 @@ fn options() -> &'static usvg::Options<'static> {
     })
 }
 
-fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
+/// The same picture as a PNG.
+///
+/// # Errors
+/// A picture that cannot be drawn.
+pub fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
     let width = usvg::Tree::from_str(svg, options()).map_err(failed)?.size().width();
     encoded(&rendered(svg, ZOOM.min(WIDEST / width))?)
 }

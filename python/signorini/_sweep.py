@@ -112,8 +112,10 @@ def _run(folder: str, missing: List[int], executor: Any) -> None:
             if _row(folder, index) is None:
                 raise KeyboardInterrupt
         return
-    futures = [executor.submit(_row, folder, index) for index in missing]
+    futures: List[Any] = []
     try:
+        for index in missing:
+            futures.append(executor.submit(_row, folder, index))
         for future in futures:
             future.result()
     except BaseException:

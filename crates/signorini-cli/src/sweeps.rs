@@ -15,8 +15,8 @@ const LISTED: usize = 10;
 
 pub const HELP: &str = "Examples:
   signorini sweep case.toml --vary loads.press.normal=-0.1:-1:10 -o pressed
-  signorini sweep case.toml --vary contacts.touch.friction.coulomb.mu=0.1:0.5:5 --vary bodies.ball.rigid.turn=0,15,30 -j 4
-  signorini sweep case.toml --vary bodies.block.solid.young=1:1000:13:log --keep summary
+  signorini sweep case.toml --vary contacts.foot.friction.coulomb.mu=0.1:0.5:5 --vary constants.heading=0,0.3,0.6 -j 4
+  signorini sweep case.toml --vary bodies.block.solid.material.linear_elastic.youngs_modulus=1:1000:13:log --keep summary
   signorini sweep case.toml --vary loads.press.normal=-1:-0.1 --vary bodies.film.membrane.tension=0.5:2 --sample 50 --seed 7
   signorini sweep pressed                        go on with what is missing
   signorini sweep pressed --gather --collect contacts.touch.area,energy

@@ -121,7 +121,7 @@ impl Manifest {
         if let Some(setting) = varied.iter().find(|v| error.message.starts_with(&format!("`--set {v}`"))) {
             error.message = error.message.replacen(&format!("--set {setting}"), &format!("--vary {setting}"), 1);
         }
-        Err(error)
+        Err(error.or_help("signorini explain KEY  tells what belongs there"))
     }
 
     /// The manifest of a folder.

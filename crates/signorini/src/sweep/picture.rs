@@ -55,9 +55,11 @@ impl Key {
         let mut place = |v: &Setting| match v {
             Setting::Number(v) => *v,
             Setting::Text(text) => {
-                let known = words.iter().position(|w| w == text);
+                // Of a table without keys the name is enough.
+                let word = text.trim_matches(|c: char| "{}=\"' ".contains(c));
+                let known = words.iter().position(|w| w == word);
                 known.unwrap_or_else(|| {
-                    words.push(text.clone());
+                    words.push(word.into());
                     words.len() - 1
                 }) as f64
             }
@@ -105,11 +107,11 @@ impl<'a> Quantity<'a> {
     /// None of what is no number, or the same in all runs.
     fn new(column: &'a Column) -> Option<Self> {
         let values: Vec<Option<f64>> = column.values.iter().map(serde_json::Value::as_f64).collect();
-        let (low, high) = range(values.iter().flatten().copied());
-        let size = values.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
-        let count = values.iter().flatten().count();
-        let changes = values.iter().flatten().any(|v| (v - low).abs() > CHANGE * size);
-        (count == 1 || (count > 1 && changes && high > low)).then_some(Self { column, values })
+        let numbers = || values.iter().flatten().copied().filter(|v| v.is_finite());
+        let (low, high) = numbers().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let count = numbers().count();
+        let changes = high - low > CHANGE * high.abs().max(low.abs());
+        (count == 1 || (count > 1 && changes)).then_some(Self { column, values })
     }
 
     /// What it belongs to, such as a contact; empty for all.
@@ -160,7 +162,8 @@ pub fn draw(manifest: &Manifest, table: &Table) -> Option<String> {
     let failed = table.count(Status::Failed);
     let note = match failed {
         0 => format!("{} runs", manifest.rows.len()),
-        n => format!("{} runs, {n} of them failed (red)", manifest.rows.len()),
+        n if keys.len() == 1 => format!("{} runs, {n} of them failed (red)", manifest.rows.len()),
+        n => format!("{} runs, {n} of them failed", manifest.rows.len()),
     };
     let sheet = Sheet { title: file.into_owned(), note, keys, chosen, table };
     Some(match (sheet.keys.len(), manifest.sample) {
@@ -240,8 +243,9 @@ impl Sheet<'_> {
                 owners.push(q.owner());
             }
         });
-        let colour = |q: &Quantity| SERIES[owners.iter().position(|o| *o == q.owner()).unwrap_or(0) % SERIES.len()];
         let several = groups.iter().any(|(_, list)| list.len() > 1);
+        let number = |q: &Quantity| owners.iter().position(|o| several && *o == q.owner()).unwrap_or(0);
+        let colour = |q: &Quantity| SERIES[number(q) % SERIES.len()];
         let listed = owners.iter().enumerate().filter(|(_, o)| several && !o.is_empty());
         let entries: Vec<(Sign, String)> =
             listed.map(|(k, o)| (Sign::Line(SERIES[k % SERIES.len()]), o.to_string())).collect();

@@ -50,8 +50,11 @@ pub fn run_row(
     Ok(Some(record))
 }
 
-/// An error in one line, without the folder of the case, which is not the same everywhere.
+/// An error in one line, without the folder of the case, which is not the same everywhere. Settings have no lines.
 fn plain(error: &crate::problem::CaseError, name: &str) -> String {
+    if error.place.as_ref().is_some_and(|place| place.name == "--set") {
+        return error.message.clone();
+    }
     let file = Path::new(name).file_name().map_or(name.into(), |f| f.to_string_lossy());
     error.one_line().replace(name, &file)
 }

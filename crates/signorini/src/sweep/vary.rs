@@ -79,7 +79,9 @@ impl Variation {
             return Err(wrong(format!("`{key}` has no values"), text));
         }
         let parts = split(stated, ':');
-        let is_range = parts.len() > 2 || (parts.len() == 2 && parts.iter().any(|p| quantity(p).is_some()));
+        // Names of sides contain colons too.
+        let counts = |part: &&str| part.parse::<usize>().is_ok();
+        let is_range = parts.len() > 1 && (quantity(parts[0]).is_some() || parts.get(2).is_some_and(counts));
         if is_range {
             let (unit, values) = range(&parts).map_err(|(message, part)| wrong(format!("`{key}`: {message}"), part))?;
             return Ok(Self { key: key.into(), unit, values });

@@ -61,7 +61,7 @@ def test_samples_and_columns(tmp_path):
         sg.gallery("string"), {TENSION: "0.5:1", "loads.press.normal": "-1:-0.5"}, tmp_path / "out",
         sample=5, seed=3, collect=["contacts.touch.area", "energy"],
     )  # fmt: skip
-    assert rows.columns[6:] == ["contacts.touch.area", "energy", "message"]
+    assert rows.columns[7:] == ["contacts.touch.area", "energy", "message"]
     again = pickle.loads(pickle.dumps(rows))
     assert again == rows and again.columns == rows.columns
     strata = sorted(int((row[TENSION] - 0.5) / 0.1) for row in rows)

@@ -73,7 +73,9 @@ impl<'a> Axis<'a> {
             return self.words.iter().enumerate().map(|(k, word)| (k as f64, escaped(&name(word)))).collect();
         }
         if !self.log {
-            let values = ticks(low, high, wanted);
+            // One tick alone tells no scale.
+            let enough = (wanted..wanted + 4).map(|n| ticks(low, high, n)).find(|values| values.len() > 1);
+            let values = enough.unwrap_or_else(|| ticks(low, high, wanted));
             let names = tick_labels(&values);
             return values.into_iter().zip(names).collect();
         }

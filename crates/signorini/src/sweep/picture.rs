@@ -34,6 +34,8 @@ const LISTED: usize = 8;
 /// Width and height of a panel.
 const WIDE: (f64, f64) = (470.0, 300.0);
 const SMALL: (f64, f64) = (330.0, 250.0);
+/// The most letters of a key below an axis.
+const LONGEST: usize = 34;
 /// Room above the panels.
 const TOP: f64 = 64.0;
 /// Changes below this part of the size of a quantity are those of rounding.
@@ -66,7 +68,7 @@ impl Key {
         };
         let places: Vec<f64> = manifest.rows.iter().map(|row| place(&row[k])).collect();
         let log = variation.is_log() && places.iter().all(|v| *v > 0.0);
-        Self { title: variation.title(), places, words, log }
+        Self { title: short(&variation.title()), places, words, log }
     }
 
     fn axis(&self) -> Axis<'_> {
@@ -95,6 +97,16 @@ impl Key {
             _ => label(place),
         }
     }
+}
+
+/// The end of a long key, from one of its parts on.
+fn short(title: &str) -> String {
+    let long = |rest: &str| rest.chars().count() > LONGEST;
+    let mut rest = title;
+    while let Some((_, tail)) = rest.split_once('.').filter(|_| long(rest)) {
+        rest = tail;
+    }
+    if rest.len() < title.len() { format!("…{rest}") } else { title.into() }
 }
 
 /// A quantity of all runs.
@@ -152,7 +164,11 @@ impl<'a> Quantity<'a> {
 
 /// The picture of what the runs have recorded; none where there is nothing to show.
 pub fn draw(manifest: &Manifest, table: &Table) -> Option<String> {
-    let keys: Vec<Key> = manifest.vary.iter().enumerate().map(|(k, v)| Key::new(manifest, k, v)).collect();
+    let mut keys: Vec<Key> = manifest.vary.iter().enumerate().map(|(k, v)| Key::new(manifest, k, v)).collect();
+    // A key with one value shows nothing beside others.
+    if keys.iter().any(|key| key.distinct().len() > 1) {
+        keys.retain(|key| key.distinct().len() > 1);
+    }
     let chosen = chosen(table, !manifest.collect.is_empty());
     if chosen.is_empty() {
         return None;
@@ -274,10 +290,10 @@ impl Sheet<'_> {
         let values = other.distinct();
         let colour = |k: usize| viridis(0.9 * k as f64 / (values.len() - 1).max(1) as f64);
         let every = values.len().div_ceil(LISTED);
-        let short = other.title.rsplit_once('.').map_or(other.title.as_str(), |(_, last)| last);
-        let (short, unit) = short.split_once(" [").map_or((short, ""), |(a, b)| (a, b.trim_end_matches(']')));
+        let last = other.title.rsplit_once('.').map_or(other.title.as_str(), |(_, end)| end);
+        let (last, unit) = last.split_once(" [").map_or((last, ""), |(a, b)| (a, b.trim_end_matches(']')));
         let entry = |(k, v): (usize, &f64)| {
-            (Sign::Line(colour(k)), format!("{short} = {} {unit}", other.name(*v)).trim_end().to_string())
+            (Sign::Line(colour(k)), format!("{last} = {} {unit}", other.name(*v)).trim_end().to_string())
         };
         let entries: Vec<(Sign, String)> = values.iter().enumerate().step_by(every).map(entry).collect();
         let shown = &self.chosen[..self.chosen.len().min(PANELS)];

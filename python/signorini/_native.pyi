@@ -32,8 +32,7 @@ def sweep_begin(
     sample: Optional[Tuple[int, int]],
     output: str,
     collect: List[str],
-    keep_all: bool,
-    restart: bool,
+    choices: Tuple[bool, bool],
 ) -> bool: ...
 def sweep_missing(output: str) -> List[int]: ...
 def sweep_row(output: str, index: int) -> Optional[str]: ...

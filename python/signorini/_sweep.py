@@ -95,7 +95,8 @@ def sweep(
     case, files = _case(problem, folder)
     stated = [(str(key), *_values(str(key), values)) for key, values in vary.items()]
     size = None if sample is None else (int(sample), int(seed))
-    resumed = _native.sweep_begin(case, stated, size, folder, [str(path) for path in collect], keep == "all", bool(restart))
+    choices = (keep == "all", bool(restart))
+    resumed = _native.sweep_begin(case, stated, size, folder, [str(path) for path in collect], choices)
     if files and not resumed:
         beside = pathlib.Path(folder) / "case"
         beside.mkdir(exist_ok=True)

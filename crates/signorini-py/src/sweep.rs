@@ -17,12 +17,12 @@ impl From<SweepError> for Failure {
 }
 
 /// Begins a sweep in a folder, or goes on with it. `vary` has keys with a text as of the command, or with values one by one.
-/// Returns whether it was there before.
+/// `choices`: whether all files of runs are kept, and whether an earlier sweep is removed. Returns whether it was there before.
 ///
 /// # Errors
 /// What is wrong with case or variations; another sweep in the folder, or a folder that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (case, vary, sample, output, collect, keep_all, restart))]
+#[pyo3(signature = (case, vary, sample, output, collect, choices))]
 pub fn sweep_begin(
     py: Python<'_>,
     case: (String, String, Vec<String>),
@@ -30,15 +30,14 @@ pub fn sweep_begin(
     sample: Option<(usize, u64)>,
     output: PathBuf,
     collect: Vec<String>,
-    keep_all: bool,
-    restart: bool,
+    choices: (bool, bool),
 ) -> PyResult<bool> {
     apart(py, || {
         let variation = |(key, text, values): &(String, Option<String>, Vec<String>)| match text {
             Some(text) => Variation::parse(&format!("{key}={text}")),
             None => Ok(Variation::list(key, &values.iter().map(String::as_str).collect::<Vec<_>>())),
         };
-        let (name, text, set) = case;
+        let ((name, text, set), (keep_all, restart)) = (case, choices);
         let manifest = Manifest::new(&Wanted {
             name,
             text,

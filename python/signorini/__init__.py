@@ -33,10 +33,11 @@ from ._run import (
     wind,
     wrap,
 )
+from ._sweep import Rows, sweep
 
 __all__ = [
     *_names, "CaseError", "Closest", "ContactResult", "Event", "Fields", "Fitted", "InternalError", "MissingPackage",
-    "OutputError", "Picture", "Problem", "Record", "Result", "Samples", "SignoriniError", "State", "Value", "check",
+    "OutputError", "Picture", "Problem", "Record", "Result", "Rows", "Samples", "SignoriniError", "State", "Value", "check",
     "closest_points", "explain", "fit", "from_meshio", "from_pyvista", "gallery", "run", "scene", "set_threads",
-    "theorem", "wind", "wrap", "__version__",
+    "sweep", "theorem", "wind", "wrap", "__version__",
 ]

@@ -4,7 +4,7 @@ use crate::console::tell;
 use indicatif::{ProgressBar, ProgressStyle};
 use signorini::run::{Iteration, Progress};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A bar per increment, with the current residual; silent where nobody watches.
 pub struct Bar {
@@ -51,6 +51,63 @@ impl Counter {
     pub fn show(&self, answered: usize) -> bool {
         self.bar.set_position(answered as u64);
         !self.interrupted()
+    }
+
+    pub fn interrupted(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The number of runs of a sweep that have ended.
+pub struct Runs {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+    json: bool,
+    started: std::time::Instant,
+    count: usize,
+    told: Mutex<Told>,
+}
+
+/// What was told of them so far.
+struct Told {
+    /// Runs that ended in this call.
+    ended: usize,
+    failed: usize,
+    /// Runs that had ended before.
+    before: usize,
+    spoke: std::time::Instant,
+}
+
+impl Runs {
+    pub fn new(count: usize, before: usize, json: bool) -> Self {
+        let bar = if json { ProgressBar::hidden() } else { ProgressBar::new(count as u64) };
+        let style = ProgressStyle::with_template("{bar:24.cyan/blue} {pos}/{len} runs  {msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_position(before as u64);
+        let started = std::time::Instant::now();
+        let told = Mutex::new(Told { ended: 0, failed: 0, before, spoke: started });
+        Self { bar, stop: stop_flag(), json, started, count, told }
+    }
+
+    /// One more has ended.
+    pub fn ended(&self, failed: bool) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.ended += 1;
+        told.failed += usize::from(failed);
+        let done = told.before + told.ended;
+        let each = self.started.elapsed().as_secs_f64() / told.ended as f64;
+        let left = format!("about {} left", in_words(each * self.count.saturating_sub(done) as f64));
+        let failed = if told.failed > 0 { format!("  {} failed", told.failed) } else { String::new() };
+        if self.bar.is_hidden() && !self.json && told.spoke.elapsed().as_secs() >= 10 {
+            tell!("[{:.0} s] {done} of {} runs  {left}{failed}", self.started.elapsed().as_secs_f64(), self.count);
+            told.spoke = std::time::Instant::now();
+        }
+        self.bar.set_position(done as u64);
+        self.bar.set_message(format!("{left}{failed}"));
     }
 
     pub fn interrupted(&self) -> bool {

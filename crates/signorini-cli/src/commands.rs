@@ -77,7 +77,7 @@ fn say_replaced(earlier: Option<Earlier>) {
 }
 
 /// The folder called after a case.
-fn default_folder(case: &Path) -> PathBuf {
+pub fn default_folder(case: &Path) -> PathBuf {
     // A case that lies in a folder of its own is called after the folder.
     let stem = case.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let parent = case.parent().and_then(|p| p.file_name()).map(|p| p.to_string_lossy().into_owned());
@@ -444,7 +444,7 @@ fn show(summary: &Summary) {
     }
 }
 
-fn read(case: &Path) -> Result<(String, String), CaseError> {
+pub fn read(case: &Path) -> Result<(String, String), CaseError> {
     if case == Path::new("-") {
         let text = std::io::read_to_string(std::io::stdin())
             .map_err(|e| CaseError::new(format!("cannot read standard input: {e}")))?;

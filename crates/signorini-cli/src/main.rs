@@ -8,6 +8,7 @@ mod begin;
 mod commands;
 mod console;
 mod report;
+mod sweeps;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use console::tell;
@@ -20,6 +21,7 @@ const EXAMPLES: &str = "Examples:
   signorini gallery run cosine_disc                   run one of its cases
   signorini run case.toml                             results into ./case
   signorini run case.toml -o out --set loads.press.normal=-0.3
+  signorini sweep case.toml --vary loads.press.normal=-0.1:-1:10
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini fit blister.toml                          adhesion from measurements
   signorini report out                                one HTML page of the results in ./out
@@ -70,6 +72,9 @@ enum Command {
         #[arg(long)]
         resume: bool,
     },
+    /// Run a case with many values of some of its keys
+    #[command(after_help = sweeps::HELP)]
+    Sweep(sweeps::SweepOptions),
     /// Check a case without running it
     #[command(after_help = "Example:\n  signorini check case.toml --picture preview.png")]
     Check {
@@ -259,6 +264,7 @@ fn main() -> ExitCode {
         Command::Run { case, options, limits, resume } => {
             commands::run_file(&case, &options.wanted(&limits, resume), json)
         }
+        Command::Sweep(options) => sweeps::sweep(options, json),
         Command::Check { case, set, picture } => commands::check(&case, &set, picture.as_deref(), json),
         Command::Fit { case, options } => commands::fit_file(&case, options.output, &options.set, json),
         Command::Closest { queries, to, output, local_minima } => {

@@ -8,6 +8,7 @@ mod pool;
 mod progress;
 mod results;
 mod stated;
+mod sweep;
 
 use crate::errors::{Failure, apart, guarded};
 use crate::progress::Told;
@@ -227,6 +228,8 @@ fn panic(py: Python<'_>) -> PyResult<()> {
 mod _native {
     #[pymodule_export]
     use super::closest::closest_points;
+    #[pymodule_export]
+    use super::sweep::{sweep_begin, sweep_gather, sweep_missing, sweep_row};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
     #[pymodule_export]
     use super::{check, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve};

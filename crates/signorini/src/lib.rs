@@ -17,6 +17,7 @@ pub mod reproduce;
 pub mod run;
 pub mod scene;
 pub mod snapshot;
+pub mod sweep;
 pub mod template;
 mod text_table;
 pub mod verify;

@@ -65,6 +65,17 @@ pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, 
     drive(&mut *model, record, 0, start, progress)
 }
 
+/// Solves a problem for its summary alone: nothing is drawn, written or kept.
+///
+/// # Errors
+/// Those of [`solve`].
+pub fn summarise(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
+    let start = Instant::now();
+    let mut model = model(problem)?;
+    let record = Record::new(model.head(), Folder::default());
+    drive(&mut *model, record, 0, start, progress)
+}
+
 /// Solves a problem and keeps its states in memory, and what a run writes beside the fields: history, pictures. With a folder
 /// all files of a run are written there, else these few are kept in memory and returned.
 ///

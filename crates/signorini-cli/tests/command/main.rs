@@ -3,3 +3,4 @@
 mod closed_output;
 mod reports;
 mod runs;
+mod sweeps;

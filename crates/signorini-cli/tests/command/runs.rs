@@ -10,7 +10,7 @@ pub fn signorini(folder: &Path) -> Command {
     command
 }
 
-fn example(name: &str) -> String {
+pub fn example(name: &str) -> String {
     let path = format!("{}/../../gallery/{name}/case.toml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(path).expect("a gallery case")
 }

@@ -66,7 +66,11 @@ fn options() -> &'static usvg::Options<'static> {
     })
 }
 
-fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
+/// The same picture as a PNG.
+///
+/// # Errors
+/// A picture that cannot be drawn.
+pub fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
     let width = usvg::Tree::from_str(svg, options()).map_err(failed)?.size().width();
     encoded(&rendered(svg, ZOOM.min(WIDEST / width))?)
 }
@@ -363,7 +367,8 @@ pub fn tick_labels(ticks: &[f64]) -> Vec<String> {
     }
     let order = |v: f64| (v.log10() + 1e-9).floor() as i32;
     let last = order(step);
-    if largest < 1e5 && last >= -4 {
+    // Powers of ten of numbers near one would be longer.
+    if largest < 1e5 && (last >= -4 || (largest >= 0.1 && last >= -7)) {
         let places = (-last).max(0) as usize;
         return ticks.iter().map(|v| format!("{:.places$}", v + 0.0)).collect();
     }

@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 const CURVE: RGBColor = RGBColor(31, 81, 140);
 const EVENT: RGBColor = RGBColor(213, 60, 40);
 /// Colours of several contacts, told apart by everyone (Okabe and Ito).
-const SERIES: [RGBColor; 5] =
+pub const SERIES: [RGBColor; 5] =
     [CURVE, RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), RGBColor(86, 180, 233)];
 const WIDTH: f64 = 860.0;
 /// More changes than this are not listed below a history.
@@ -201,7 +201,7 @@ pub fn convergence(steps: &[StepReport]) -> String {
     let (low, high) = all().map(|p| p.1).fold((0.1f64, 10.0f64), |(l, h), v| (l.min(v), h.max(v)));
     let mut page = Page::new((WIDTH, 480.0), "Convergence of the contact front", "");
     let x = Axis::new("equilibrium solve", (0.8, longest + 0.2));
-    let y = Axis { name: "residual / tolerance", range: (0.4 * low, 2.5 * high), log: true };
+    let y = Axis { log: true, ..Axis::new("residual / tolerance", (0.4 * low, 2.5 * high)) };
     let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, WIDTH, 476.0], x, y);
     panel.line(&[(0.8, 1.0), (longest + 0.2, 1.0)], Sign::Dashes(EVENT), 2.0);
     let count = histories.len();

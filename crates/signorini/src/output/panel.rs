@@ -1,6 +1,6 @@
 //! Charts of curves, in fractions of a pixel: axes with round ticks, lines, areas, dots, marks and a key.
 
-use super::chart::{FONT, rounded_range, tick_labels, ticks};
+use super::chart::{FONT, label, rounded_range, tick_labels, ticks};
 use super::page::{Sign, clip_to, css, escaped, text_width};
 use plotters::style::RGBColor;
 use std::fmt::Write as _;
@@ -17,19 +17,21 @@ pub struct Axis<'a> {
     pub range: (f64, f64),
     /// Whether equal lengths are equal factors.
     pub log: bool,
+    /// Words at 0, 1, … in place of numbers.
+    pub words: &'a [String],
 }
 
 impl<'a> Axis<'a> {
     /// From one value to another.
     pub fn new(name: &'a str, range: (f64, f64)) -> Self {
-        Axis { name, range, log: false }
+        Axis { name, range, log: false, words: &[] }
     }
 
     /// A little beyond both values, where variations below those of rounding are none.
     pub fn around(name: &'a str, range: (f64, f64)) -> Self {
         let (low, high) = rounded_range(range);
         let pad = 0.05 * (high - low);
-        Axis { name, range: (low - pad, high + pad), log: false }
+        Axis { name, range: (low - pad, high + pad), log: false, words: &[] }
     }
 
     /// From zero to a little above the largest value, or from a little below the smallest to zero, or both.
@@ -41,7 +43,12 @@ impl<'a> Axis<'a> {
         };
         let pad = 0.06 * (high - low);
         let low = if low < 0.0 { low - pad } else { low };
-        Axis { name, range: (low, if high > 0.0 { high + pad } else { high }), log: false }
+        Axis { name, range: (low, if high > 0.0 { high + pad } else { high }), log: false, words: &[] }
+    }
+
+    /// With words at 0, 1, … in place of numbers.
+    pub fn of_words(name: &'a str, words: &'a [String]) -> Self {
+        Axis { name, range: (-0.5, words.len() as f64 - 0.5), log: false, words }
     }
 
     /// A share of the way along the axis.
@@ -54,12 +61,31 @@ impl<'a> Axis<'a> {
     pub fn ticks(&self, length: f64) -> Vec<(f64, String)> {
         let (low, high) = self.range;
         let wanted = (length / 70.0) as usize;
+        if !self.words.is_empty() {
+            // Of words too long for their room the end tells more than the beginning.
+            let room = (length / self.words.len() as f64 / 7.5) as usize;
+            let name = |word: &String| match word.chars().count() {
+                count if count > room.max(4) => {
+                    format!("…{}", word.chars().skip(count + 1 - room.max(4)).collect::<String>())
+                }
+                _ => word.clone(),
+            };
+            return self.words.iter().enumerate().map(|(k, word)| (k as f64, escaped(&name(word)))).collect();
+        }
         if !self.log {
-            let values = ticks(low, high, wanted);
+            // One tick alone tells no scale.
+            let enough = (wanted..wanted + 4).map(|n| ticks(low, high, n)).find(|values| values.len() > 1);
+            let values = enough.unwrap_or_else(|| ticks(low, high, wanted));
             let names = tick_labels(&values);
             return values.into_iter().zip(names).collect();
         }
         let (from, to) = ((low.log10() - 1e-9).ceil() as i32, (high.log10() + 1e-9).floor() as i32);
+        // Within a decade or two the powers of ten alone are too few.
+        if to - from < 2 {
+            let all = (from - 1..=to).flat_map(|k| [1.0, 2.0, 5.0].map(|d| d * 10f64.powi(k)));
+            let values: Vec<f64> = all.filter(|v| *v >= low * (1.0 - 1e-9) && *v <= high * (1.0 + 1e-9)).collect();
+            return values.into_iter().map(|v| (v, label(v))).collect();
+        }
         let every = ((to - from) as usize / wanted.max(1)).max(1);
         let name = |k: i32| if (0..4).contains(&k) { format!("{}", 10i32.pow(k as u32)) } else { format!("1e{k}") };
         (from..=to).step_by(every).map(|k| (10f64.powi(k), name(k))).collect()

@@ -32,6 +32,6 @@ fn peak_memory() -> Option<u64> {
 }
 
 /// The 64-bit FNV-1a hash, the same on every machine.
-fn fnv1a(bytes: &[u8]) -> u64 {
+pub fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3))
 }

@@ -27,6 +27,7 @@ mod solid_theory;
 mod solids;
 mod stability;
 mod statement;
+mod sweep;
 mod systems;
 mod unit;
 mod words;

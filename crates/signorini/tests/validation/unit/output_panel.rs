@@ -16,7 +16,7 @@ fn points_are_placed_in_fractions_of_a_pixel_and_rounding_is_not_magnified() {
 
 #[test]
 fn ticks_of_a_logarithmic_axis_are_powers_of_ten() {
-    let axis = Axis { name: "r", range: (5e-4, 200.0), log: true };
+    let axis = Axis { log: true, ..Axis::new("r", (5e-4, 200.0)) };
     let ticks = axis.ticks(500.0);
     assert_eq!(ticks.first().map(|t| t.1.as_str()), Some("1e-3"));
     assert_eq!(ticks.last().map(|t| t.1.as_str()), Some("100"));

@@ -8,8 +8,9 @@
 //! | `P = ∂Π/∂ζ`, `r = ∂Π/∂p` | its generalised derivatives |
 //!
 //! A law knows neither gaps nor shape functions, and nothing of where the trial comes from: a multiplier, a penalty or an
-//! augmented Lagrangian. The friction traction is that on the slave, against its slip; with `y` the slip, a law that
-//! returns to the closest point of a convex set is associated: the slip is normal to the set (maximum dissipation).
+//! augmented Lagrangian. Tangential components are along the slip of the slave, `-y`; the friction on the slave is their
+//! opposite. A law that returns to the closest point of a convex set is associated: the slip is normal to the set (maximum
+//! dissipation).
 
 mod coulomb;
 mod tresca;

@@ -1,6 +1,7 @@
 //! Published and exact problems, run as a user runs them: from the case file to the summary.
 
 mod adhesion;
+mod architecture;
 mod audit;
 mod bad_input;
 mod bad_starts;
@@ -32,10 +33,21 @@ mod systems;
 mod unit;
 mod words;
 
+#[path = "../../examples/04_cells.rs"]
+mod cells_example;
+#[path = "../../examples/03_rope.rs"]
+mod rope_example;
+
 use serde_json::Value;
 use signorini::problem::CaseError;
 use signorini::run::{RunError, run};
 use signorini_solve::Silent;
+
+#[test]
+fn the_examples_hold() {
+    rope_example::main().expect("a rope");
+    cells_example::main().expect("a column");
+}
 
 /// Runs a case text with overrides and returns its summary.
 pub fn summary(case: &str, set: &[String]) -> Value {

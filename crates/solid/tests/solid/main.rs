@@ -7,3 +7,14 @@ mod punch;
 mod system;
 mod unit;
 mod zone;
+
+#[path = "../../examples/06_friction_law.rs"]
+mod friction_law_example;
+#[path = "../../examples/05_system.rs"]
+mod system_example;
+
+#[test]
+fn the_examples_hold() {
+    system_example::main();
+    friction_law_example::main();
+}

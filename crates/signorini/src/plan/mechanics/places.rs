@@ -277,7 +277,7 @@ impl Planner<'_> {
                 list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
             }
             if let Some(v) = &key.body_force {
-                let per = if matches!(kinds[part.body], Kind::Solid) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
+                let per = if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
                 list.push(TimedLoad::BodyForce(self.vector_field(v, per, wrong)?));
             }
             if let Some(v) = &key.moment {
@@ -293,7 +293,7 @@ impl Planner<'_> {
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
                     .error(key, format!("the load `{name}` has {} values", list.len()))
-                    .help("give exactly one of force, moment, tension, body_force (per length), traction, pressure")
+                    .help("give exactly one of force, moment, tension, body_force (per volume, or per length of curves), traction, pressure")
             })?;
             self.check_load(&part, &key.on, system)(&load)?;
             out.push(PlacedLoad { name: name.clone(), part, load });
@@ -302,7 +302,7 @@ impl Planner<'_> {
         for (name, key) in &problem.supports {
             let Some(spring) = &key.spring else { continue };
             let part = self.part(&key.on, numbers)?;
-            let per = if matches!(kinds[part.body], Kind::Solid) { [-3, 1, 0] } else { [-1, 1, 0] };
+            let per = if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { [-1, 1, 0] };
             let stiffness = if plane {
                 let [x, y] = self.reader.numbers::<2>(spring, per)?;
                 Vector::<3>::new(x, y, 0.0)

@@ -277,7 +277,8 @@ impl Planner<'_> {
                 list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
             }
             if let Some(v) = &key.body_force {
-                let per = if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
+                let per =
+                    if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
                 list.push(TimedLoad::BodyForce(self.vector_field(v, per, wrong)?));
             }
             if let Some(v) = &key.moment {

@@ -133,7 +133,7 @@ def test_an_interruption_keeps_what_is_there():
     assert process.stdout.readline() == "begins\n"
     time.sleep(4)
     process.send_signal(signal.SIGINT)
-    told, _ = process.communicate(timeout=60)
+    told, _ = process.communicate(timeout=300)
     reason, count, first = told.split()
     assert reason == "interrupted" and int(count) > 0 and first == "True"
 

@@ -110,7 +110,7 @@ enum Command {
         #[arg(long)]
         local_minima: bool,
     },
-    /// Write the results of a run as one HTML page, which needs no network
+    /// Write the results of a run as one HTML page
     #[command(
         after_help = "Examples:\n  signorini report out\n  signorini report out -o hertz.html\n\nThe folder is one that signorini run, fit or gallery run has written. Failed and interrupted\nruns are shown as far as they came."
     )]
@@ -121,7 +121,7 @@ enum Command {
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
-    /// Show the results of a run in a browser on this computer, and follow a run that goes on
+    /// Show the results of a run in a browser, also while it goes on
     #[command(after_help = "Example:\n  signorini view out")]
     View {
         /// The folder of the results

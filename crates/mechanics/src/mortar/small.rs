@@ -57,10 +57,16 @@ impl SmallSliding {
         let mut measures = at_rest.measures.clone();
         for line in &at_rest.terms.gaps {
             let own = &mut measures[line.node as usize];
+            if own.weight <= 0.0 {
+                continue;
+            }
             own.gap += line.entries.iter().map(|(u, d)| d * moved(*u, now)).sum::<f64>() / own.weight;
         }
         for line in &at_rest.terms.slips {
             let own = &mut measures[line.node as usize];
+            if own.matched <= 0.0 {
+                continue;
+            }
             let change = line.entries.iter().map(|(u, d)| d * (moved(*u, now) - moved(*u, since))).sum::<f64>();
             own.slip[line.slot - 1] += change / own.matched;
         }

@@ -13,9 +13,24 @@ const QUERIES: &str = r#"{"format": "cpp-corpus-1", "cases": [
 fn arguments(command: &str) -> Option<(&'static [&'static str], i32)> {
     Some(match command {
         "run" => (&["run", "case.toml", "-o", "out", "--set", "output.pictures=false"], 0),
+        "sweep" => (
+            &[
+                "sweep",
+                "case.toml",
+                "--vary",
+                "bodies.film.membrane.degree=3,4",
+                "-o",
+                "swept",
+                "--set",
+                "output.pictures=false",
+            ],
+            0,
+        ),
         "check" => (&["check", "case.toml"], 0),
         "fit" => (&["fit", "case.toml", "--json"], 1),
         "closest" => (&["closest", "queries.json", "-o", "answers.json"], 0),
+        "report" => (&["report", "nothing", "--json"], 1),
+        "view" => (&["view", "nothing", "--json"], 1),
         "new" => (&["new", "string", "begun"], 0),
         "explain" => (&["explain"], 0),
         "schema" => (&["schema"], 0),
@@ -86,6 +101,7 @@ fn a_reader_that_goes_away_ends_the_printing_and_nothing_else() {
         assert_eq!((code, &*told), (Some(usual), ""), "{name}");
         let written = match &*name {
             "run" => "out/summary.json",
+            "sweep" => "swept/sweep.csv",
             "gallery run" => "example/summary.json",
             "closest" => "answers.json",
             "new" => "begun/case.toml",

@@ -116,9 +116,10 @@ struct Quantity<'a> {
 }
 
 impl<'a> Quantity<'a> {
-    /// None of what is no number, or the same in all runs.
-    fn new(column: &'a Column) -> Option<Self> {
-        let values: Vec<Option<f64>> = column.values.iter().map(serde_json::Value::as_f64).collect();
+    /// Of the runs that are done; none of what is no number, or the same in all of them.
+    fn new(column: &'a Column, done: &[bool]) -> Option<Self> {
+        let value = |(value, done): (&serde_json::Value, &bool)| value.as_f64().filter(|_| *done);
+        let values: Vec<Option<f64>> = column.values.iter().zip(done).map(value).collect();
         let numbers = || values.iter().flatten().copied().filter(|v| v.is_finite());
         let (low, high) = numbers().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let count = numbers().count();
@@ -191,7 +192,9 @@ pub fn draw(manifest: &Manifest, table: &Table) -> Option<String> {
 
 /// Quantities that change, the main ones first; all that were asked for in their order.
 fn chosen(table: &Table, asked: bool) -> Vec<Quantity<'_>> {
-    let all: Vec<Quantity> = table.collected().iter().filter_map(Quantity::new).collect();
+    // What a failed run reached last is of another time.
+    let done: Vec<bool> = table.records.iter().map(|record| record.status == Status::Done).collect();
+    let all: Vec<Quantity> = table.collected().iter().filter_map(|column| Quantity::new(column, &done)).collect();
     if asked {
         return all;
     }

@@ -15,7 +15,7 @@
 
 use super::cover::{CoveredPoint, Seen};
 use super::measure::{Apart, Matched};
-use super::terms::{Carried, FaceTerms, Line, Traction};
+use super::terms::{Carried, FaceTerms, Line, Traction, Wanted};
 use crate::pair::axis;
 use crate::points::Direction;
 use crate::surface::{Local, Surface};
@@ -185,8 +185,8 @@ fn row_of<'a>(rows: &'a mut Rows, key: (u32, usize), variables: &Variables<'_>) 
 }
 
 impl Surfaces<'_> {
-    /// What the points of a face add; derivatives where a tangent is asked for.
-    pub fn terms(&self, carried: &Carried<'_>, points: &[CoveredPoint], wants_tangent: bool) -> FaceTerms {
+    /// What the points of a face add.
+    pub fn terms(&self, carried: &Carried<'_>, points: &[CoveredPoint], wanted: Wanted) -> FaceTerms {
         let contact = carried.contact;
         let Some(first) = points.first() else { return FaceTerms::default() };
         let mut variables = Variables::new(self, first.face);
@@ -195,11 +195,11 @@ impl Surfaces<'_> {
             let Some(seen) = &point.master else { continue };
             sights.extend(variables.sight(self, (&point.s, seen)).map(|sight| (point, sight)));
         }
-        let mut sums = Sums::new(&variables, contact.friction.is_some(), wants_tangent);
+        let mut sums = Sums::new(&variables, contact.friction.is_some(), wanted == Wanted::Tangent);
         let (mut pushes, mut gaps) = (Rows::new(), Rows::new());
         for (point, sight) in &sights {
             sums.add(sight, &carried.traction_at(&point.shares, &sight.normal));
-            if !wants_tangent {
+            if wanted == Wanted::Forces {
                 continue;
             }
             for (node, share) in point.shares.iter().filter(|(node, _)| carried.acts[*node as usize]) {

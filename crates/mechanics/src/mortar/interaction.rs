@@ -5,7 +5,7 @@ use super::measure::{Facing, Matched, Measured, MetPoint, NodeMeasure, Opposite,
 use super::rigid;
 use super::shown::{shared_of, show, zone_of};
 use super::small::{AtRest, SmallSliding};
-use super::terms::{Assembly, Carried, FaceTerms};
+use super::terms::{Assembly, Carried, FaceTerms, Wanted};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
@@ -117,29 +117,28 @@ impl Mortar {
 
     /// Forces of all faces, with their derivatives.
     fn add_faces(&self, found: &Found<'_>, assembly: &Assembly<'_>, carried: &Carried<'_>, out: &mut Target<'_>) {
-        let wants = out.tangent.is_some();
+        let wanted = if out.tangent.is_some() { Wanted::Tangent } else { Wanted::Forces };
         let measured = found.measured.as_ref();
         let mut add = |list: Vec<FaceTerms>| list.iter().for_each(|terms| assembly.add(terms, out));
         match found.sides.facing() {
             Facing::Surfaces(sides) => {
                 for faces in measured.cover.points.chunks(AT_ONCE) {
-                    add(faces.par_iter().map(|points| sides.terms(carried, points, wants)).collect());
+                    add(faces.par_iter().map(|points| sides.terms(carried, points, wanted)).collect());
                 }
                 let matched: Vec<&[Matched]> = self.matched.chunk_by(|a, b| a.face == b.face).collect();
-                for faces in matched.chunks(AT_ONCE).filter(|_| wants) {
+                for faces in matched.chunks(AT_ONCE).filter(|_| wanted == Wanted::Tangent) {
                     add(faces.par_iter().map(|list| sides.slips(carried, list, false)).collect());
                 }
             }
             Facing::OnRigid(sides) => {
                 let faces: Vec<_> = measured.cover.points.iter().zip(&measured.pairs).collect();
                 for faces in faces.chunks(AT_ONCE) {
-                    let of =
-                        |(points, pairs): &(&Vec<_>, &Vec<_>)| sides.terms(carried, (points, pairs), (wants, false));
+                    let of = |(points, pairs): &(&Vec<_>, &Vec<_>)| sides.terms(carried, (points, pairs), wanted);
                     add(faces.par_iter().map(of).collect());
                 }
                 let list = self.matched.iter().zip(&measured.matched);
                 let list: Vec<_> = list.filter_map(|(m, pair)| Some((m, pair.as_ref()?))).collect();
-                for of_face in list.chunk_by(|a, b| a.0.face == b.0.face).filter(|_| wants) {
+                for of_face in list.chunk_by(|a, b| a.0.face == b.0.face).filter(|_| wanted == Wanted::Tangent) {
                     add(vec![rigid::slips(carried, of_face, false)]);
                 }
             }

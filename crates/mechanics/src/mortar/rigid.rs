@@ -2,10 +2,10 @@
 
 use super::cover::{Cover, CoveredPoint};
 use super::measure::Matched;
-use super::terms::{Carried, FaceTerms, Line, Traction};
+use super::terms::{Carried, FaceTerms, Line, Traction, Wanted};
 use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
-use crate::points::{Anchor, Master, Order};
-use crate::surface::Surface;
+use crate::points::{Master, MaterialPoint, Order};
+use crate::surface::{Local, Surface};
 use rayon::prelude::*;
 use signorini_geometry::Vector;
 use std::collections::BTreeMap;
@@ -27,19 +27,23 @@ pub(super) struct OnRigid<'a> {
 type Rows = BTreeMap<(u32, usize), Vec<f64>>;
 
 impl OnRigid<'_> {
+    /// The pair of a point of a face, with its slip since an anchor if there is one.
+    ///
     /// # Errors
     /// Why there is no pair.
-    fn pair(&self, point: &CoveredPoint, order: Order) -> Result<Pair, NoPair> {
-        let slave = self.slave.placed(point.face, &point.s);
+    fn pair(&self, (face, s): (usize, &Local), on: Option<MaterialPoint>, order: Order) -> Result<Pair, NoPair> {
+        let slave = self.slave.placed(face, s);
         let met = self.master.nearest(&slave.x, f64::INFINITY, None).ok_or(NoPair::NoCoordinates)?;
+        let anchored = on.map(|point| (Stuck { point, ..Stuck::default() }, self.master.at(&point)));
+        let stuck = anchored.as_ref().map(|(stuck, anchor)| (stuck, anchor));
         let (first, since, friction) = (self.first, [self.since; 2], self.friction);
         let axis = AxisChoice::Material;
-        Encounter { slave: &slave, met: &met, first, stuck: None, since, friction, axis }.measure(order)
+        Encounter { slave: &slave, met: &met, first, stuck, since, friction, axis }.measure(order)
     }
 
     /// The pairs of all points, and how many could not be measured.
     pub fn pairs(&self, cover: &Cover) -> (Vec<Vec<Option<Pair>>>, usize) {
-        let of = |point: &CoveredPoint| self.pair(point, Order::First);
+        let of = |point: &CoveredPoint| self.pair((point.face, &point.s), None, Order::First);
         let found: Vec<Vec<Result<Pair, NoPair>>> =
             cover.points.par_iter().map(|list| list.iter().map(of).collect()).collect();
         let is_lost = |pair: &&Result<Pair, NoPair>| matches!(pair, Err(NoPair::NoCoordinates));
@@ -49,21 +53,15 @@ impl OnRigid<'_> {
 
     /// The pair of a matched point, with its slip since then.
     pub fn matched(&self, matched: &Matched) -> Option<Pair> {
-        let slave = self.slave.placed(matched.face, &matched.s);
-        let met = self.master.nearest(&slave.x, f64::INFINITY, None)?;
-        let stuck = Stuck { point: matched.on, ..Stuck::default() };
-        let anchor: Anchor = self.master.at(&matched.on);
-        let (first, since, axis) = (self.first, [self.since; 2], AxisChoice::Material);
-        let stuck = Some((&stuck, &anchor));
-        Encounter { slave: &slave, met: &met, first, stuck, since, friction: true, axis }.measure(Order::First).ok()
+        self.pair((matched.face, &matched.s), Some(matched.on), Order::First).ok()
     }
 
-    /// What the points of a face add; derivatives where a tangent is asked for, without those of directions where `is_linear`.
+    /// What the points of a face add.
     pub fn terms(
         &self,
         carried: &Carried<'_>,
         (points, pairs): (&[CoveredPoint], &[Option<Pair>]),
-        (wants_tangent, is_linear): (bool, bool),
+        wanted: Wanted,
     ) -> FaceTerms {
         let found: Vec<(&CoveredPoint, &Pair)> = (points.iter().zip(pairs))
             .filter_map(|(point, pair)| Some((point, pair.as_ref()?)))
@@ -72,7 +70,7 @@ impl OnRigid<'_> {
         let over = Over::new(found.iter().map(|(_, pair)| *pair));
         let size = over.unknowns.len();
         let mut forces = vec![[0.0; 2]; size];
-        let mut stiffness = vec![0.0; if wants_tangent && !is_linear { size * size } else { 0 }];
+        let mut stiffness = vec![0.0; if wanted == Wanted::Tangent { size * size } else { 0 }];
         let (mut pushes, mut gaps) = (Rows::new(), Rows::new());
         for (point, pair) in found {
             let traction = carried.traction_at(&point.shares, &pair.normal);
@@ -83,10 +81,12 @@ impl OnRigid<'_> {
                 forces[*at][0] += pushes + rubbed;
                 forces[*at][1] += pushes.abs() + rubbed.abs();
             }
-            if !wants_tangent {
+            if wanted == Wanted::Forces {
                 continue;
             }
-            if !is_linear && let Ok(pair) = self.pair(point, Order::Second) {
+            if wanted == Wanted::Tangent
+                && let Ok(pair) = self.pair((point.face, &point.s), None, Order::Second)
+            {
                 add_stiffness(&pair, &traction, &place, (&mut stiffness, size));
             }
             for (node, share) in point.shares.iter().filter(|(node, _)| carried.acts[*node as usize]) {

@@ -4,7 +4,7 @@
 use super::Mortar;
 use super::measure::{Facing, Measured, NodeMeasure, Sides};
 use super::rigid;
-use super::terms::{Carried, FaceTerms, Line};
+use super::terms::{Carried, FaceTerms, Line, Wanted};
 use crate::body::{BodyState, PlaceError};
 use crate::interaction::Bodies;
 use signorini_contact::compress;
@@ -99,14 +99,15 @@ impl Mortar {
         let mut faces = Vec::new();
         match sides.facing() {
             Facing::Surfaces(surfaces) => {
-                faces.extend(measured.cover.points.iter().map(|points| surfaces.terms(&carried, points, true)));
+                faces
+                    .extend(measured.cover.points.iter().map(|points| surfaces.terms(&carried, points, Wanted::Lines)));
                 let matched = self.matched.chunk_by(|a, b| a.face == b.face);
                 faces.extend(matched.map(|list| surfaces.slips(&carried, list, true)));
             }
             Facing::OnRigid(sides) => {
                 let points = measured.cover.points.iter().map(Vec::as_slice);
                 let pairs = measured.pairs.iter().map(Vec::as_slice);
-                faces.extend(points.zip(pairs).map(|of| sides.terms(&carried, of, (true, true))));
+                faces.extend(points.zip(pairs).map(|of| sides.terms(&carried, of, Wanted::Lines)));
                 let list = self.matched.iter().zip(&measured.matched);
                 let list: Vec<_> = list.filter_map(|(m, pair)| Some((m, pair.as_ref()?))).collect();
                 let of_faces = list.chunk_by(|a, b| a.0.face == b.0.face);

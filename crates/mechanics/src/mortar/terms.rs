@@ -21,6 +21,16 @@ pub(super) struct Line {
     pub entries: Vec<(u32, f64)>,
 }
 
+/// What of it is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Forces,
+    /// Rows and columns of nodes too.
+    Lines,
+    /// The derivatives of forces in the unknowns of bodies too.
+    Tangent,
+}
+
 /// What a face adds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FaceTerms {

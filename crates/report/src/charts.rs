@@ -1,9 +1,9 @@
 //! Histories and residuals as charts of the page.
 
 use crate::folder::{Results, Told};
-use crate::html::headed;
 use crate::naming::sentence;
 use serde::Serialize;
+use signorini::report::headed;
 use std::collections::BTreeMap;
 
 /// A chart: some series over one axis.

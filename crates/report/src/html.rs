@@ -57,11 +57,6 @@ pub fn list(entries: &[(String, String)]) -> String {
     }
 }
 
-/// A heading with its unit: `area [mm²]`.
-pub fn headed(title: &str, unit: &str) -> String {
-    if unit.is_empty() { title.to_string() } else { format!("{title} [{unit}]") }
-}
-
 /// JSON as it stands within a script: nothing in it ends the script.
 pub fn json<T: serde::Serialize>(value: &T) -> String {
     serde_json::to_string(value).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c")

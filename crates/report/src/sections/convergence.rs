@@ -1,10 +1,11 @@
 //! How increments converged: iterations, residuals, solver.
 
 use crate::folder::Results;
-use crate::html::{headed, table};
+use crate::html::table;
 use crate::sections::verdict::reason;
 use signorini::output::figure::figure;
 use signorini::report::StepReport;
+use signorini::report::headed;
 
 /// More increments than this are not read one by one.
 const ROWS: usize = 100;

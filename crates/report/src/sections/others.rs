@@ -1,11 +1,12 @@
 //! Results that are not those of increments: paths, fits, scenes.
 
 use crate::folder::{Results, Told};
-use crate::html::{headed, list, section, table};
+use crate::html::{list, section, table};
 use crate::naming::sentence;
 use serde_json::Value;
 use signorini::output::figure::{figure, told};
 use signorini::report::Summary;
+use signorini::report::headed;
 
 /// Their tables.
 pub fn others(results: &Results) -> String {

@@ -1,9 +1,9 @@
 //! Tables of what was found, with units.
 
 use crate::folder::{Results, Told};
-use crate::html::{headed, section, table};
+use crate::html::{section, table};
 use signorini::output::figure::{figure, figures, told, told_vector};
-use signorini::report::{Event, StepReport, Summary, UnitNames, columns, resultants_of};
+use signorini::report::{Event, StepReport, Summary, UnitNames, columns, headed, resultants_of};
 
 /// More rows than this are not read; the table of the folder has all.
 const ROWS: usize = 60;

@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_audit::{Answer, Finding};
 use std::collections::BTreeMap;
-pub use table::{Column, columns, history, resultants, resultants_of, table};
+pub use table::{Column, columns, headed, history, resultants, resultants_of, table};
 
 /// Version of the keys of the summary.
 pub const SCHEMA: u32 = 2;

@@ -118,7 +118,7 @@ fn radius_error(contact: &ContactReport, radius: f64) -> Option<f64> {
 }
 
 /// A heading with its unit: `area [mm²]`.
-fn headed(title: &str, unit: &str) -> String {
+pub fn headed(title: &str, unit: &str) -> String {
     if unit.is_empty() { title.to_string() } else { format!("{title} [{unit}]") }
 }
 

@@ -8,6 +8,7 @@ use super::manifest::Manifest;
 use super::record::{Record, Status};
 use super::vary::Setting;
 use crate::problem::CaseError;
+use crate::report::headed;
 use serde_json::{Map, Value, json};
 
 /// A column.
@@ -23,7 +24,7 @@ pub struct Column {
 impl Column {
     /// The name with the unit.
     pub fn title(&self) -> String {
-        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+        headed(&self.name, &self.unit)
     }
 }
 

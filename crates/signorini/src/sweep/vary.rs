@@ -1,6 +1,7 @@
 //! What is varied: `KEY=FROM:TO:COUNT`, `KEY=FROM:TO:COUNT:log` or `KEY=a,b,c`.
 
 use crate::problem::CaseError;
+use crate::report::headed;
 use serde::{Deserialize, Serialize};
 
 /// How the values of a key are written, for advice.
@@ -162,7 +163,7 @@ impl Variation {
 
     /// The key with its unit.
     pub fn title(&self) -> String {
-        if self.unit.is_empty() { self.key.clone() } else { format!("{} [{}]", self.key, self.unit) }
+        headed(&self.key, &self.unit)
     }
 }
 

@@ -34,11 +34,13 @@ pub fn rows(vary: &[Variation], sample: Option<Sample>) -> Result<Vec<Vec<Settin
         Some(Sample { count, .. }) if count > MOST => return Err(too_many()),
         Some(sample) => latin_hypercube(vary, sample),
         None => {
-            let values = vary.iter().map(Variation::grid).collect::<Result<Vec<_>, _>>()?;
-            let count = values.iter().try_fold(1usize, |n, list| n.checked_mul(list.len()));
+            // Before any list is made: one number of values may be more than memory holds.
+            let counts = vary.iter().map(Variation::count).collect::<Result<Vec<_>, _>>()?;
+            let count = counts.iter().try_fold(1usize, |n, count| n.checked_mul(*count));
             if count.is_none_or(|n| n > MOST) {
                 return Err(too_many());
             }
+            let values = vary.iter().map(Variation::grid).collect::<Result<Vec<_>, _>>()?;
             grid(&values)
         }
     };

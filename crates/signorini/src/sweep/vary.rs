@@ -114,22 +114,34 @@ impl Variation {
         }
     }
 
-    /// All values, for a grid.
+    /// Number of the values, for a grid.
     ///
     /// # Errors
     /// A range without a number of values.
-    pub fn grid(&self) -> Result<Vec<Setting>, CaseError> {
+    pub fn count(&self) -> Result<usize, CaseError> {
         match &self.values {
-            Values::List(list) => Ok(list.clone()),
-            Values::Range { count: Some(count), .. } => {
-                let last = count.saturating_sub(1).max(1) as f64;
-                Ok((0..*count).map(|k| self.at(k as f64 / last)).collect())
-            }
+            Values::List(list) => Ok(list.len()),
+            Values::Range { count: Some(count), .. } => Ok(*count),
             Values::Range { count: None, .. } => {
                 let message = format!("`{}`: a grid needs the number of values", self.key);
                 Err(CaseError::new(message).help("write KEY=FROM:TO:COUNT, or sample the ranges with --sample N"))
             }
         }
+    }
+
+    /// All values, for a grid.
+    ///
+    /// # Errors
+    /// A range without a number of values.
+    pub fn grid(&self) -> Result<Vec<Setting>, CaseError> {
+        let count = self.count()?;
+        Ok(match &self.values {
+            Values::List(list) => list.clone(),
+            Values::Range { .. } => {
+                let last = count.saturating_sub(1).max(1) as f64;
+                (0..count).map(|k| self.at(k as f64 / last)).collect()
+            }
+        })
     }
 
     /// The value at a share in [0, 1] of the way from the first to the last.

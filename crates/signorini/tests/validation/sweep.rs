@@ -117,6 +117,8 @@ fn wrong_variations_are_told_before_anything_runs() {
     }
     let place = error("bodies.film.membrane.tensoin=1:2:3").place.expect("a place");
     assert_eq!(place.name, "--vary");
+    let many = Manifest::new(&wanted(&["steps.0.to=1:2:1000000000000"])).expect_err("more runs than can be");
+    assert!(many.message.contains("more than 1000000 runs"), "{}", many.message);
     let twice = Manifest::new(&wanted(&["steps.0.to=1", "steps.0.to=2"])).expect_err("a key varied twice");
     assert!(twice.message.contains("varied twice"));
 }

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'a55cc29f2109b67f'
+SCHEMA = '38c86f60382d5ff0'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -26,7 +26,7 @@ CHOICES = {
     'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction'},
     'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff'},
     'Mesh': {'grid': 'GridMesh', 'gmsh': 'DividedGmshMesh', 'arrays': 'MeshArrays'},
-    'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discrete_cell': 'DiscMethod'},
+    'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discs': 'DiscMethod'},
     'Motion': {'fixed': 'Fixed', 'prescribed': 'Prescribed', 'free': 'FreeMotion'},
     'Path': {'points': '[[Value]]', 'spline': 'SplinePath', 'file': 'PathFile', 'arc': 'ArcPath', 'helix': 'HelixPath', 'formula': 'FormulaPath'},
     'PathFriction': {'coulomb': 'PathCoulomb'},
@@ -290,9 +290,8 @@ class Cells(Noun):
     geometry: The region filled with material: a shape, a set operation on shapes, or an image.
     mesh: The grid of cells around the body.
     material: Material of the body: linear elastic.
+    alpha: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
     degree: Polynomial degree, 1 to 8; 3 if left out.
-    fictitious: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left
-        out.
     functions: Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this
         total degree (`trunk`); `tensor` if left out.
     groups: Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z >
@@ -303,7 +302,7 @@ class Cells(Noun):
     """
 
     _key = 'cells'
-    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'fictitious': ('fictitious', 'Value'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str')}
+    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str')}
 
     def __init__(
         self,
@@ -311,8 +310,8 @@ class Cells(Noun):
         geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         mesh: CellsMesh | Mapping[str, Any],
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        alpha: Optional[Value] = None,
         degree: Optional[int] = None,
-        fictitious: Optional[Value] = None,
         functions: Optional[str] = None,
         groups: Optional[Mapping[str, Value]] = None,
         integration: Optional[ExactIntegration | SubCellIntegration | Mapping[str, Any] | str] = None,
@@ -321,8 +320,8 @@ class Cells(Noun):
         self.geometry = geometry
         self.mesh = mesh
         self.material = material
+        self.alpha = alpha
         self.degree = degree
-        self.fictitious = fictitious
         self.functions = functions
         self.groups = groups
         self.integration = integration
@@ -446,12 +445,12 @@ class Contact(Noun):
     between: The two bodies, slave first. Contact is tested at points of the slave.
     friction: Friction law; frictionless if left out.
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
+    self_contact: The rope, beam or solid that is in contact with itself.
     sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
-    within: Self-contact: the rope, beam or solid.
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'sliding': ('sliding', 'str'), 'within': ('within', 'str')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str')}
 
     def __init__(
         self,
@@ -461,16 +460,16 @@ class Contact(Noun):
         between: Optional[Sequence[str] | Array] = None,
         friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | Mapping[str, Any] | str] = None,
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
+        self_contact: Optional[str] = None,
         sliding: Optional[str] = None,
-        within: Optional[str] = None,
     ) -> None:
         self.adhesion = adhesion
         self.all = all
         self.between = between
         self.friction = friction
         self.method = method
+        self.self_contact = self_contact
         self.sliding = sliding
-        self.within = within
 
 
 class CoulombFriction(Noun):
@@ -582,7 +581,7 @@ class DiscMethod(Noun):
         distance that the functions can resolve.
     """
 
-    _key = 'discrete_cell'
+    _key = 'discs'
     _types = {'centres': ('centres', 'str'), 'penalty': ('penalty', 'Penalty'), 'radius': ('radius', 'Value'), 'spacing': ('spacing', 'Value')}
 
     def __init__(
@@ -606,14 +605,15 @@ class DividedGmshMesh(Noun):
     divisions: How often every cell is divided into four; 0 if left out. Curved sides are divided along their
         curves. The meshes before each division are the coarser levels of a multigrid method.
     group: The physical group that forms the body; all cells if left out.
-    move: Translation, applied after scaling and rotation; lengths.
     refine: Local refinement: which cells are divided, at degree 1 and 2.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
     scale: Length of one unit of the file in base units; 1 if left out.
-    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    translate: Translation, applied after scaling and rotation; lengths.
     """
 
     _key = 'gmsh'
-    _types = {'file': ('file', 'str'), 'divisions': ('divisions', 'int'), 'group': ('group', 'str'), 'move': ('move', '[Value]'), 'refine': ('refine', 'Refine'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+    _types = {'file': ('file', 'str'), 'divisions': ('divisions', 'int'), 'group': ('group', 'str'), 'refine': ('refine', 'Refine'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
@@ -621,18 +621,18 @@ class DividedGmshMesh(Noun):
         file: str,
         divisions: Optional[int] = None,
         group: Optional[str] = None,
-        move: Optional[Sequence[Value] | Array] = None,
         refine: Optional[Refine | Mapping[str, Any]] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
         scale: Optional[Value] = None,
-        turn: Optional[Value | Sequence[Value] | Array] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
         self.divisions = divisions
         self.group = group
-        self.move = move
         self.refine = refine
+        self.rotate = rotate
         self.scale = scale
-        self.turn = turn
+        self.translate = translate
 
 
 class Ellipse(Noun):
@@ -800,28 +800,29 @@ class GmshMesh(Noun):
 
     file: A .msh file of version 2.2 or 4.1, ASCII or binary. The path is relative to the folder of the case.
     group: The physical group that forms the body; all cells if left out.
-    move: Translation, applied after scaling and rotation; lengths.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
     scale: Length of one unit of the file in base units; 1 if left out.
-    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    translate: Translation, applied after scaling and rotation; lengths.
     """
 
     _key = 'gmsh'
-    _types = {'file': ('file', 'str'), 'group': ('group', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+    _types = {'file': ('file', 'str'), 'group': ('group', 'str'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
         *,
         file: str,
         group: Optional[str] = None,
-        move: Optional[Sequence[Value] | Array] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
         scale: Optional[Value] = None,
-        turn: Optional[Value | Sequence[Value] | Array] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
         self.group = group
-        self.move = move
+        self.rotate = rotate
         self.scale = scale
-        self.turn = turn
+        self.translate = translate
 
 
 class GridMesh(Noun):
@@ -862,31 +863,31 @@ class HeightMap(Noun):
 
     file: The file. The path is relative to the folder of the case.
     spacing: Spacing of the columns (along x) and of the rows (along y).
-    move: Translation, applied after rotation; lengths.
     origin: Position of the first height; the origin if left out.
+    rotate: Angle in radians by which the map is rotated about its origin.
     scale: Height of one unit of the file; 1 if left out.
-    turn: Angle in radians by which the map is rotated about its origin.
+    translate: Translation, applied after rotation; lengths.
     """
 
     _key = 'height_map'
-    _types = {'file': ('file', 'str'), 'spacing': ('spacing', '[Value]'), 'move': ('move', '[Value]'), 'origin': ('origin', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value')}
+    _types = {'file': ('file', 'str'), 'spacing': ('spacing', '[Value]'), 'origin': ('origin', '[Value]'), 'rotate': ('rotate', 'Value'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
         *,
         file: str,
         spacing: Sequence[Value] | Array,
-        move: Optional[Sequence[Value] | Array] = None,
         origin: Optional[Sequence[Value] | Array] = None,
+        rotate: Optional[Value] = None,
         scale: Optional[Value] = None,
-        turn: Optional[Value] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
         self.spacing = spacing
-        self.move = move
         self.origin = origin
+        self.rotate = rotate
         self.scale = scale
-        self.turn = turn
+        self.translate = translate
 
 
 class HelixPath(Noun):
@@ -1368,26 +1369,27 @@ class Nurbs(Noun):
     """NURBS surfaces from a JSON file.
 
     file: The file. The path is relative to the folder of the case.
-    move: Translation, applied after scaling and rotation; lengths.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
     scale: Length of one unit of the file in base units; 1 if left out.
-    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    translate: Translation, applied after scaling and rotation; lengths.
     """
 
     _key = 'nurbs'
-    _types = {'file': ('file', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+    _types = {'file': ('file', 'str'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
         *,
         file: str,
-        move: Optional[Sequence[Value] | Array] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
         scale: Optional[Value] = None,
-        turn: Optional[Value | Sequence[Value] | Array] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
-        self.move = move
+        self.rotate = rotate
         self.scale = scale
-        self.turn = turn
+        self.translate = translate
 
 
 class OffsetGeometry(Noun):
@@ -1508,48 +1510,48 @@ class PathFile(Noun):
 
     file: A CSV file with columns x, y, z. The path is relative to the folder of the case.
     closed: Whether the curve is closed.
-    move: Translation, applied after scaling and rotation; lengths.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling.
     scale: Length of one unit of the file in base units; 1 if left out.
     spline: Whether the points are joined by a spline; false if left out.
-    turn: Rotation vector in radians about the origin of the file, applied after scaling.
+    translate: Translation, applied after scaling and rotation; lengths.
     """
 
     _key = 'file'
-    _types = {'file': ('file', 'str'), 'closed': ('closed', 'bool'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'spline': ('spline', 'bool'), 'turn': ('turn', 'Value|[Value]')}
+    _types = {'file': ('file', 'str'), 'closed': ('closed', 'bool'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'spline': ('spline', 'bool'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
         *,
         file: str,
         closed: Optional[bool] = None,
-        move: Optional[Sequence[Value] | Array] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
         scale: Optional[Value] = None,
         spline: Optional[bool] = None,
-        turn: Optional[Value | Sequence[Value] | Array] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
         self.closed = closed
-        self.move = move
+        self.rotate = rotate
         self.scale = scale
         self.spline = spline
-        self.turn = turn
+        self.translate = translate
 
 
 class Penalty(Noun):
     """A penalty is given by the penetration that it admits, not by a stiffness.
 
-    wanted_penetration: Penetration at the largest pressure, a length.
+    penetration: Penetration at the largest pressure, a length.
     """
 
     _key = 'penalty'
-    _types = {'wanted_penetration': ('wanted_penetration', 'Value')}
+    _types = {'penetration': ('penetration', 'Value')}
 
     def __init__(
         self,
         *,
-        wanted_penetration: Optional[Value] = None,
+        penetration: Optional[Value] = None,
     ) -> None:
-        self.wanted_penetration = wanted_penetration
+        self.penetration = penetration
 
 
 class Plane(Noun):
@@ -1731,28 +1733,26 @@ class Rigid(Noun):
     """A rigid body.
 
     shape: The shape of its surface.
-    lies: Position relative to a membrane. If left out, it follows from the direction of a plane, cone or
-        paraboloid and from the centre of a round body; all other bodies are below.
     motion: Motion of the body; at rest if left out.
-    side: The side of the surface on which contact is possible; `outside` if left out.
+    side: The side of the surface on which contact is possible; `outside` if left out. In contact with a membrane,
+        the side of the membrane on which the body is. If left out there, it follows from the direction of a
+        plane, cone or paraboloid and from the centre of a round body; all other bodies are below.
     smooth: For triangle meshes: a smooth surface through the vertices replaces the flat triangles, for bodies
         that slide or roll on it; false if left out. Paths always use the smooth surface.
     """
 
     _key = 'rigid'
-    _types = {'shape': ('shape', '<Shape>'), 'lies': ('lies', 'str'), 'motion': ('motion', '<Motion>'), 'side': ('side', 'str'), 'smooth': ('smooth', 'bool')}
+    _types = {'shape': ('shape', '<Shape>'), 'motion': ('motion', '<Motion>'), 'side': ('side', 'str'), 'smooth': ('smooth', 'bool')}
 
     def __init__(
         self,
         *,
         shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
-        lies: Optional[str] = None,
         motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
         side: Optional[str] = None,
         smooth: Optional[bool] = None,
     ) -> None:
         self.shape = shape
-        self.lies = lies
         self.motion = motion
         self.side = side
         self.smooth = smooth
@@ -2044,26 +2044,27 @@ class Stl(Noun):
     """A triangle mesh from an STL, OBJ or PLY file.
 
     file: The file. The path is relative to the folder of the case.
-    move: Translation, applied after scaling and rotation; lengths.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
     scale: Length of one unit of the file in base units; 1 if left out.
-    turn: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    translate: Translation, applied after scaling and rotation; lengths.
     """
 
     _key = 'stl'
-    _types = {'file': ('file', 'str'), 'move': ('move', '[Value]'), 'scale': ('scale', 'Value'), 'turn': ('turn', 'Value|[Value]')}
+    _types = {'file': ('file', 'str'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
         *,
         file: str,
-        move: Optional[Sequence[Value] | Array] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
         scale: Optional[Value] = None,
-        turn: Optional[Value | Sequence[Value] | Array] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.file = file
-        self.move = move
+        self.rotate = rotate
         self.scale = scale
-        self.turn = turn
+        self.translate = translate
 
 
 class SubCellIntegration(Noun):
@@ -2093,11 +2094,11 @@ class Support(Noun):
     rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
         components.
     spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
-    uniform: All points share one unknown displacement in the components that are not prescribed.
+    tied: All points share one unknown displacement in the components that are not prescribed.
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'uniform': ('uniform', 'bool')}
+    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool')}
 
     def __init__(
         self,
@@ -2107,14 +2108,14 @@ class Support(Noun):
         normal: Optional[Value] = None,
         rotation: Optional[Sequence[Value] | Array] = None,
         spring: Optional[Sequence[Value] | Array] = None,
-        uniform: Optional[bool] = None,
+        tied: Optional[bool] = None,
     ) -> None:
         self.on = on
         self.displacement = displacement
         self.normal = normal
         self.rotation = rotation
         self.spring = spring
-        self.uniform = uniform
+        self.tied = tied
 
 
 class Table(Noun):
@@ -2284,20 +2285,20 @@ class Winch(Noun):
     """A winch, which pays out rope and takes it in.
 
     at: The end of the rope with the winch.
-    paid_out: Unstrained length paid out since the start, as an expression of `t`; negative if rope is taken in.
+    length: Unstrained length paid out since the start, as an expression of `t`; negative if rope is taken in.
     """
 
     _key = None
-    _types = {'at': ('at', 'str'), 'paid_out': ('paid_out', 'Value')}
+    _types = {'at': ('at', 'str'), 'length': ('length', 'Value')}
 
     def __init__(
         self,
         *,
         at: str,
-        paid_out: Value,
+        length: Value,
     ) -> None:
         self.at = at
-        self.paid_out = paid_out
+        self.length = length
 
 
 class Winding(Noun):

@@ -244,10 +244,9 @@ pub struct GmshMesh {
     /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
     /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
-    pub turn: Option<Components>,
+    pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
-    #[serde(rename = "move")]
-    pub moved: Option<List<Value>>,
+    pub translate: Option<List<Value>>,
 }
 
 /// A mesh from a file whose cells may be divided.
@@ -261,10 +260,9 @@ pub struct DividedGmshMesh {
     /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
     /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
-    pub turn: Option<Components>,
+    pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
-    #[serde(rename = "move")]
-    pub moved: Option<List<Value>>,
+    pub translate: Option<List<Value>>,
     /// How often every cell is divided into four; 0 if left out. Curved sides are divided along their curves. The
     /// meshes before each division are the coarser levels of a multigrid method.
     pub divisions: Option<i64>,

@@ -26,7 +26,7 @@ pub struct CellsBody {
     /// Quadrature of cut cells; `exact` if left out.
     pub integration: Option<CellIntegration>,
     /// Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
-    pub fictitious: Option<Value>,
+    pub alpha: Option<Value>,
     /// Treatment of pieces that are not connected to the largest one; `refuse` if left out.
     pub islands: Option<IslandsKey>,
     /// Material of the body: linear elastic.

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// The two bodies, slave first. Contact is tested at points of the slave.
     pub between: Option<List<String>>,
-    /// Self-contact: the rope, beam or solid.
-    pub within: Option<String>,
+    /// The rope, beam or solid that is in contact with itself.
+    pub self_contact: Option<String>,
     /// Whether contact is possible between all bodies.
     pub all: Option<bool>,
     /// Contact discretisation. If left out, it is chosen by the kinds of the bodies.
@@ -103,7 +103,7 @@ pub enum Method {
     /// For finite cells: at points of the recovered boundary.
     CellSurface(SolidMethod),
     /// For finite cells, or self-contact of them: discs (in space balls) on both surfaces, which repel each other.
-    DiscreteCell(DiscMethod),
+    Discs(DiscMethod),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
@@ -239,7 +239,7 @@ pub enum Enforcement {
 #[serde(deny_unknown_fields)]
 pub struct Penalty {
     /// Penetration at the largest pressure, a length.
-    pub wanted_penetration: Option<Value>,
+    pub penetration: Option<Value>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -41,7 +41,7 @@ pub struct Winch {
     /// The end of the rope with the winch.
     pub at: RopeEnd,
     /// Unstrained length paid out since the start, as an expression of `t`; negative if rope is taken in.
-    pub paid_out: Value,
+    pub length: Value,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
@@ -140,10 +140,9 @@ pub struct PathFile {
     /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
     /// Rotation vector in radians about the origin of the file, applied after scaling.
-    pub turn: Option<Components>,
+    pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
-    #[serde(rename = "move")]
-    pub moved: Option<List<Value>>,
+    pub translate: Option<List<Value>>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -307,7 +307,7 @@ pub struct Support {
     /// Prescribed displacement along the outward normal; the tangential components are free.
     pub normal: Option<Value>,
     /// All points share one unknown displacement in the components that are not prescribed.
-    pub uniform: Option<bool>,
+    pub tied: Option<bool>,
     /// Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
     pub spring: Option<List<Value>>,
 }

@@ -11,14 +11,13 @@ use serde::{Deserialize, Serialize};
 pub struct Rigid {
     /// The shape of its surface.
     pub shape: Shape,
-    /// The side of the surface on which contact is possible; `outside` if left out.
+    /// The side of the surface on which contact is possible; `outside` if left out. In contact with a membrane, the side of the
+    /// membrane on which the body is. If left out there, it follows from the direction of a plane, cone or paraboloid and from the
+    /// centre of a round body; all other bodies are below.
     pub side: Option<Side>,
     /// For triangle meshes: a smooth surface through the vertices replaces the flat triangles, for bodies that slide or
     /// roll on it; false if left out. Paths always use the smooth surface.
     pub smooth: Option<bool>,
-    /// Position relative to a membrane. If left out, it follows from the direction of a plane, cone or paraboloid and
-    /// from the centre of a round body; all other bodies are below.
-    pub lies: Option<Lies>,
     /// Motion of the body; at rest if left out.
     pub motion: Option<Motion>,
 }
@@ -26,17 +25,8 @@ pub struct Rigid {
 impl Rigid {
     /// A body at rest with contact on its outside.
     pub fn new(shape: Shape) -> Self {
-        Self { shape, side: None, smooth: None, lies: None, motion: None }
+        Self { shape, side: None, smooth: None, motion: None }
     }
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum Lies {
-    /// Below the membrane.
-    Below,
-    /// Above the membrane.
-    Above,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
@@ -46,6 +36,10 @@ pub enum Side {
     Outside,
     /// The surface bounds a hole in the body; contact is on the inside.
     Inside,
+    /// The body is below a membrane.
+    Below,
+    /// The body is above a membrane.
+    Above,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]

@@ -342,10 +342,9 @@ pub struct HeightMap {
     /// Height of one unit of the file; 1 if left out.
     pub scale: Option<Value>,
     /// Angle in radians by which the map is rotated about its origin.
-    pub turn: Option<Value>,
+    pub rotate: Option<Value>,
     /// Translation, applied after rotation; lengths.
-    #[serde(rename = "move")]
-    pub moved: Option<List<Value>>,
+    pub translate: Option<List<Value>>,
 }
 
 /// A body where an expression of x, y and z is negative, within a box.
@@ -370,8 +369,7 @@ pub struct SurfaceFile {
     /// Length of one unit of the file in base units; 1 if left out.
     pub scale: Option<Value>,
     /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
-    pub turn: Option<Components>,
+    pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
-    #[serde(rename = "move")]
-    pub moved: Option<List<Value>>,
+    pub translate: Option<List<Value>>,
 }

@@ -31,6 +31,8 @@ pub struct Source {
     pub text: Option<Arc<dyn Text>>,
     /// Contents of files that exist in memory only, by the names that the problem gives them. They replace files on disk.
     pub files: Arc<BTreeMap<String, Vec<u8>>>,
+    /// Keys of earlier versions that were read: the line of the file, the earlier name and the present one.
+    pub renamed: Vec<(usize, String, &'static str)>,
 }
 
 impl Source {
@@ -57,6 +59,14 @@ impl Source {
             Some(bytes) => Ok(bytes.clone()),
             None => std::fs::read(self.folder().join(name)),
         }
+    }
+
+    /// The keys of earlier versions that were read, and what to do.
+    pub fn renamed_keys(&self) -> Option<String> {
+        let key = |(line, old, new): &(usize, String, &str)| format!("`{old}` is now `{new}` (line {line})");
+        let keys: Vec<String> = self.renamed.iter().map(key).collect();
+        let migrate = format!("`signorini migrate {}` rewrites the file", self.name);
+        (!keys.is_empty()).then(|| format!("keys have new names: {}; {migrate}", keys.join(", ")))
     }
 
     pub fn line(&self, key: &KeyPath) -> Option<usize> {

@@ -23,7 +23,6 @@ mod vtk;
 pub use error::ReportError;
 use folder::Results;
 use page::{Purpose, page};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The page of a folder of results, or of a file of answers of closest points.
@@ -42,20 +41,9 @@ pub fn report(folder: &Path) -> Result<String, ReportError> {
 pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
     let html = report(folder)?;
     let path = output.map_or_else(|| beside(folder), Path::to_path_buf);
-    let mut part = path.clone().into_os_string();
-    part.push(".part");
-    let store = || -> std::io::Result<()> {
-        let mut file = std::fs::File::create(&part)?;
-        file.write_all(html.as_bytes())?;
-        file.sync_all()?;
-        std::fs::rename(&part, &path)
-    };
-    match store() {
+    match signorini::output::atomic::write(&path, html.as_bytes()) {
         Ok(()) => Ok(path),
-        Err(source) => {
-            let _ = std::fs::remove_file(&part);
-            Err(ReportError::Write { path, source })
-        }
+        Err(source) => Err(ReportError::Write { path, source }),
     }
 }
 

@@ -1,11 +1,13 @@
 //! What helps to begin: templates, explanations, the schema, problems with known answers.
 
-use crate::commands::{DONE, INTERRUPTED, NOT_CONVERGED, WRONG_INPUT, report, unknown_example};
+use crate::commands::{DONE, INTERRUPTED, NOT_CONVERGED, WRONG_INPUT, read, report, unknown_example};
 use crate::console::{self, say, tell};
 use serde_json::{Value, json};
-use signorini::case::schema;
+use signorini::case::renamed::{Renamed, modernised};
+use signorini::case::{schema, toml_error};
 use signorini::explain::{explain as explanation, reference, words as all_words};
 use signorini::gallery::{asset, find};
+use signorini::output::atomic;
 use signorini::problem::CaseError;
 use signorini::report::words;
 use signorini::reproduce::{FIGURES, reproduce as reproduced};
@@ -42,6 +44,53 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
         say!("{}\n\nRun it with  signorini run {}", path.display(), path.display());
     }
     DONE
+}
+
+/// Gives the keys of earlier versions in case files their present names; standard input is printed with these.
+pub fn migrate(files: &[PathBuf], json: bool) -> u8 {
+    let mut all = Vec::new();
+    for file in files {
+        if file == Path::new("-") {
+            match read(file) {
+                Ok((_, text)) => console::print(format_args!("{}", modernised(&text).0)),
+                Err(error) => return report(&error, json),
+            }
+            continue;
+        }
+        let renamed = match migrated(file) {
+            Ok(renamed) => renamed,
+            Err(error) => return report(&error, json),
+        };
+        let name = file.display().to_string();
+        if !json {
+            for key in &renamed {
+                say!("{name}:{}: `{}` is now `{}`", key.line, key.old, key.new);
+            }
+            if renamed.is_empty() {
+                say!("{name}: all keys have their present names");
+            }
+        }
+        let keys = renamed.iter().map(|key| json!({"line": key.line, "earlier": key.old, "present": key.new}));
+        all.push(json!({"file": name, "renamed": keys.collect::<Vec<_>>()}));
+    }
+    if json {
+        say!("{}", Value::from(all));
+    }
+    DONE
+}
+
+/// Rewrites one file, if it has keys of earlier versions.
+fn migrated(file: &Path) -> Result<Vec<Renamed>, CaseError> {
+    let (name, text) = read(file)?;
+    toml_error::check(&name, &text)?;
+    let (text, mut renamed) = modernised(&text);
+    renamed.sort_by_key(|key| key.line);
+    if !renamed.is_empty() {
+        atomic::write(file, text.as_bytes()).map_err(|error| {
+            CaseError::new(format!("cannot write `{name}`: {error}")).help("check that this program may write there")
+        })?;
+    }
+    Ok(renamed)
 }
 
 fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> std::io::Result<()> {

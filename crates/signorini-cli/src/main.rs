@@ -140,6 +140,15 @@ enum Command {
         /// The new folder (default: the template's name)
         folder: Option<PathBuf>,
     },
+    /// Rewrite case files of earlier versions with the present names of keys
+    #[command(
+        after_help = "Example:\n  signorini migrate case.toml\n\nComments and layout stay. Earlier names are read with a warning."
+    )]
+    Migrate {
+        /// The case files; - prints standard input with the present names
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
     /// Explain a key of the case file or a word of the results
     #[command(
         after_help = "Examples:\n  signorini explain membrane.tension\n  signorini explain iteration_limit\n  signorini explain expressions"
@@ -273,6 +282,7 @@ fn main() -> ExitCode {
         Command::Report { folder, output } => report::write(&folder, output.as_deref(), json),
         Command::View { folder, port } => report::view(&folder, port, json),
         Command::New { template, folder } => begin::new(&template, folder, json),
+        Command::Migrate { files } => begin::migrate(&files, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { summary, markdown } => begin::schema(summary, markdown),
         Command::Verify => begin::verify(json),

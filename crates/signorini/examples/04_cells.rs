@@ -31,7 +31,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         degree: Some(2),
         functions: None,
         integration: None,
-        fictitious: None,
+        alpha: None,
         islands: None,
         material: Material::LinearElastic(LinearElastic { youngs_modulus: YOUNG.into(), poissons_ratio: 0.3.into() }),
         groups: Named::default(),

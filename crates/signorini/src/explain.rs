@@ -1,6 +1,6 @@
 //! Words that results are told in, and what to do about them.
 
-use crate::case::schema;
+use crate::case::{renamed, schema};
 use crate::problem::{CaseError, suggestion};
 use crate::report::words;
 
@@ -358,7 +358,11 @@ pub fn explain(asked: &str) -> Result<String, CaseError> {
     known.dedup();
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let word = asked.trim().rsplit('.').next().unwrap_or_default();
-    Err(CaseError::new(format!("`{asked}` is not known")).help(suggestion(word, &known)))
+    let help = match renamed::present_word(word) {
+        Some(present) => format!("`{word}` is now `{present}`"),
+        None => suggestion(word, &known),
+    };
+    Err(CaseError::new(format!("`{asked}` is not known")).help(help))
 }
 
 /// A column of a table named after something of the case, `touch:area`, or after a component, `slip_x`; none for words that

@@ -125,7 +125,7 @@ fn write(
         "tension_factor": estimate.tension.as_ref().map(entry),
         "correlation": estimate.correlation,
         "scatter": estimate.scatter,
-        "warnings": estimate.warnings,
+        "warnings": problem.source.renamed_keys().into_iter().chain(estimate.warnings.clone()).collect::<Vec<_>>(),
         "verdict": estimate.verdict(confidence),
     });
     let mut rows = String::from("time,measured,fitted,residual\n");

@@ -3,6 +3,7 @@
 mod origin;
 pub mod override_key;
 mod reader;
+pub mod renamed;
 pub mod schema;
 mod spans;
 pub mod toml_error;
@@ -39,8 +40,10 @@ pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Problem, Cas
 /// The source of a problem that is part of a text, for the places of its errors.
 fn source(name: &str, text: String, origins: Origins) -> Source {
     let spans = Spans::of(&text);
+    let mut renamed: Vec<_> = origins.renamed.iter().map(|key| (key.line, key.old.clone(), key.new)).collect();
+    renamed.sort_unstable();
     let text = CaseText { name: name.to_string(), text, origins, spans };
-    Source { name: name.to_string(), text: Some(Arc::new(text)), ..Source::default() }
+    Source { name: name.to_string(), text: Some(Arc::new(text)), renamed, ..Source::default() }
 }
 
 /// The text of a problem: the one it was read from, or else one that states the same.

@@ -1,24 +1,27 @@
-//! Where the parts of a case text come from: the file, or a `--set` on the command line.
+//! Where the parts of a case text come from: the file, a key of it that has another name now, or a `--set` on the command line.
 
+use super::renamed::Renamed;
 use crate::CaseError;
 use crate::error::Place;
 use std::ops::Range;
 use toml_edit::{Document, TableLike};
 
-/// A case text with its settings, and what is needed to tell where each part was written.
+/// A case text with present keys and its settings, and what is needed to tell where each part was written.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     /// The text of the file.
     file: String,
     edits: Vec<Edit>,
+    /// The keys that were renamed.
+    pub renamed: Vec<Renamed>,
     /// Places of the keys that were set and of their values in the text with all settings.
     set: Vec<(Range<usize>, String)>,
 }
 
-/// What one setting changed, in bytes of the text before it and after it.
+/// What one setting changed, or one key that was renamed; in bytes of the text before it and after it.
 #[derive(Clone, Debug)]
 struct Edit {
-    setting: String,
+    setting: Option<String>,
     before: Range<usize>,
     after: Range<usize>,
 }
@@ -41,7 +44,19 @@ impl Origins {
         let start = a.iter().zip(b).take_while(|(a, b)| a == b).count();
         let most = a.len().min(b.len()) - start;
         let end = a.iter().rev().zip(b.iter().rev()).take(most).take_while(|(a, b)| a == b).count();
-        self.edits.push(Edit { setting: setting.into(), before: start..a.len() - end, after: start..b.len() - end });
+        self.edits.push(Edit {
+            setting: Some(setting.into()),
+            before: start..a.len() - end,
+            after: start..b.len() - end,
+        });
+    }
+
+    /// Takes into account that keys of a text were renamed, in this order.
+    pub fn rename(&mut self, renamed: Vec<Renamed>) {
+        for Renamed { span, with, .. } in &renamed {
+            self.edits.push(Edit { setting: None, before: span.clone(), after: span.start..span.start + with.len() });
+        }
+        self.renamed.extend(renamed);
     }
 
     /// Finds the keys that were set in the text with all settings.
@@ -49,8 +64,9 @@ impl Origins {
         let Ok(document) = Document::parse(text) else { return };
         self.set = (self.edits.iter())
             .filter_map(|edit| {
-                let key: Vec<&str> = edit.setting.split_once('=')?.0.split('.').map(str::trim).collect();
-                Some((place_of(document.as_table(), &key)?, edit.setting.clone()))
+                let setting = edit.setting.as_ref()?;
+                let key: Vec<&str> = setting.split_once('=')?.0.split('.').map(str::trim).collect();
+                Some((place_of(document.as_table(), &key)?, setting.clone()))
             })
             .collect();
     }
@@ -61,9 +77,11 @@ impl Origins {
         }
         for edit in self.edits.iter().rev() {
             if edit.after.contains(&at) {
-                return Origin::Setting(&edit.setting);
-            }
-            if at >= edit.after.end {
+                match &edit.setting {
+                    Some(setting) => return Origin::Setting(setting),
+                    None => at = edit.before.start,
+                }
+            } else if at >= edit.after.end {
                 at = at - edit.after.end + edit.before.end;
             }
         }

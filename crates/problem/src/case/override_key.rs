@@ -1,35 +1,50 @@
 //! `--set KEY=VALUE`: replaces or adds a key of the case file before it is read.
 
 use super::origin::Origins;
+use super::renamed::{self, modernised};
 use crate::{CaseError, suggestion};
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-/// Applies overrides to the text of a case file, the rest of which stays as it is; and tells where its parts come from.
+/// Applies overrides to the text of a case file, the rest of which stays as it is but for keys of earlier versions; and tells where
+/// its parts come from.
 pub fn apply(name: &str, text: &str, overrides: &[String]) -> Result<(String, Origins), CaseError> {
     let mut origins = Origins::of_file(text);
+    let (mut text, renamed) = modernised(text);
+    origins.rename(renamed);
     if overrides.is_empty() {
-        return Ok((text.into(), origins));
+        return Ok((text, origins));
     }
-    let mut document = DocumentMut::from_str(text)
-        .map_err(|e| CaseError::new(e.message().to_string()).at(name, text, e.span().unwrap_or(0..0)))?;
-    let mut before = document.to_string();
+    let mut document = DocumentMut::from_str(&text)
+        .map_err(|e| CaseError::new(e.message().to_string()).at(name, &text, e.span().unwrap_or(0..0)))
+        .map_err(|e| origins.relocated(e))?;
     let stated = document.clone();
-    for setting in overrides {
+    let settings: Vec<String> = overrides.iter().map(|setting| with_present_names(setting)).collect();
+    for setting in &settings {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
             CaseError::new(format!("`--set {setting}` contains no `=`")).help("write  --set loads.press.normal=-0.3")
         })?;
         set(document.as_table_mut(), key.trim(), parse_value(value.trim()))
             .map_err(|message| CaseError::new(format!("`--set {setting}`: {message}")))?;
         let after = document.to_string();
-        origins.set(setting, [&before, &after]);
-        before = after;
+        origins.set(setting, [&text, &after]);
+        text = after;
     }
-    for setting in overrides {
+    for setting in &settings {
         check_entry(&stated, &document, setting)?;
     }
-    origins.finish(&before);
-    Ok((before, origins))
+    let (text, renamed) = modernised(&text);
+    origins.rename(renamed);
+    origins.finish(&text);
+    Ok((text, origins))
+}
+
+/// A setting whose key has the names of today.
+fn with_present_names(setting: &str) -> String {
+    let Some((key, value)) = setting.split_once('=') else { return setting.into() };
+    let earlier: Vec<&str> = key.split('.').map(str::trim).collect();
+    let present = (1..=earlier.len()).map(|n| renamed::present_name(&earlier[..n]).unwrap_or(earlier[n - 1]));
+    format!("{}={value}", present.collect::<Vec<_>>().join("."))
 }
 
 /// A TOML value, or else a string: `--set loads.press.normal=-2*t` needs no quotes.
@@ -74,7 +89,7 @@ const NAMED: [(&str, &str, &[&str]); 9] = [
     ("bodies", "body", &[]),
     ("supports", "support", &["on"]),
     ("loads", "load", &["on"]),
-    ("contacts", "contact", &["between", "within", "all"]),
+    ("contacts", "contact", &["between", "self_contact", "all"]),
     ("paths", "path", &["from"]),
     ("winding", "winding", &["on"]),
     ("ropes", "rope", &["on"]),

@@ -8,6 +8,14 @@ pub fn from_toml(name: &str, text: &str, error: &toml::de::Error) -> CaseError {
     told(name, text, error.message(), error.span())
 }
 
+/// Whether a text is TOML.
+///
+/// # Errors
+/// What is wrong, with its place.
+pub fn check(name: &str, text: &str) -> Result<(), CaseError> {
+    toml::de::DeTable::parse(text).map(|_| ()).map_err(|error| from_toml(name, text, &error))
+}
+
 /// The same of what a reader of anything but a text says: without a place.
 pub fn in_plain_words(message: &str) -> CaseError {
     CaseError { place: None, ..told("", "", message, None) }

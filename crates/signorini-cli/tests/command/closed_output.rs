@@ -32,6 +32,7 @@ fn arguments(command: &str) -> Option<(&'static [&'static str], i32)> {
         "report" => (&["report", "nothing", "--json"], 1),
         "view" => (&["view", "nothing", "--json"], 1),
         "new" => (&["new", "string", "begun"], 0),
+        "migrate" => (&["migrate", "case.toml"], 0),
         "explain" => (&["explain"], 0),
         "schema" => (&["schema"], 0),
         // It ends with its output, before all problems are verified.

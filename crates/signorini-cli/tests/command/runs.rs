@@ -232,3 +232,21 @@ fn a_picture_that_is_told_is_there() {
     assert!(text(&output.stdout).contains("Picture in p.svg"));
     assert!(std::fs::read_to_string(folder.path().join("p.svg")).expect("a picture").contains("<svg"));
 }
+
+#[test]
+fn a_case_of_an_earlier_version_runs_with_a_warning_until_it_is_migrated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = folder.path().join("case.toml");
+    let present = example("punch");
+    std::fs::write(&case, present.replace("tied = true", "uniform = true # all")).expect("a case");
+    let warned = |told: &str| told.contains("`uniform` is now `tied` (line 30)");
+    let checked = signorini(folder.path()).args(["check", "case.toml"]).output().expect("a check");
+    assert!(checked.status.success() && warned(&text(&checked.stdout)), "{}", text(&checked.stdout));
+    let migrated = signorini(folder.path()).args(["migrate", "case.toml"]).output().expect("a migration");
+    assert_eq!(text(&migrated.stdout), "case.toml:30: `uniform` is now `tied`\n");
+    assert_eq!(std::fs::read_to_string(&case).unwrap(), present.replace("tied = true", "tied = true # all"));
+    let checked = signorini(folder.path()).args(["check", "case.toml"]).output().expect("a check");
+    assert!(checked.status.success() && !text(&checked.stdout).contains("new names"));
+    let wrong = signorini(folder.path()).args(["migrate", "nothing.toml"]).output().expect("a refusal");
+    assert_eq!(wrong.status.code(), Some(1));
+}

@@ -1,6 +1,6 @@
 //! Drawing: SVG by `plotters`, PNG from the same SVG by `resvg`, with a font that travels along.
 
-use super::{Folder, OutputError};
+use super::{Folder, OutputError, atomic};
 use base64::Engine as _;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -50,10 +50,7 @@ pub fn save_as(path: &std::path::Path, svg: &str) -> Result<(), OutputError> {
         "png" => png(svg)?,
         other => return Err(failed(format!("`{other}` is not a picture format; valid are png and svg"))),
     };
-    let fail = |source| OutputError::Write { path: path.to_path_buf(), source };
-    let part = path.with_extension(format!("{extension}.part"));
-    std::fs::write(&part, bytes).map_err(fail)?;
-    std::fs::rename(&part, path).map_err(fail)
+    atomic::write(path, &bytes).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
 }
 
 fn options() -> &'static usvg::Options<'static> {

@@ -1,5 +1,6 @@
 //! The result folder.
 
+use super::atomic;
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -163,20 +164,7 @@ impl Folder {
         }
         let Some(folder) = &self.path else { return Ok(()) };
         let path = folder.join(name);
-        let part = folder.join(format!("{name}.part"));
-        let write = || -> io::Result<()> {
-            if let Some(parent) = path.parent() {
-                std::fs::create_dir_all(parent)?;
-            }
-            let mut file = std::fs::File::create(&part)?;
-            io::Write::write_all(&mut file, content)?;
-            file.sync_all()?;
-            std::fs::rename(&part, &path)
-        };
-        write().map_err(|source| {
-            let _ = std::fs::remove_file(&part);
-            OutputError::Write { path, source }
-        })
+        atomic::write(&path, content).map_err(|source| OutputError::Write { path, source })
     }
 
     /// Appends a line to the log.

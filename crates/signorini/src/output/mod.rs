@@ -1,5 +1,6 @@
 //! Result files: each written under another name first and then renamed, so that a file is whole or absent.
 
+pub mod atomic;
 mod body_fields;
 pub(crate) mod camera;
 pub mod chart;

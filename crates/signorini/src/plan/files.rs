@@ -29,8 +29,9 @@ impl Planner<'_> {
         }
         let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
         let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
-        let angle = key.turn.as_ref().map(|t| self.reader.number(t, NONE)).transpose()?.unwrap_or(0.0);
-        let moved = key.moved.as_ref().map(|m| self.reader.numbers::<3>(m, LENGTH)).transpose()?.unwrap_or_default();
+        let angle = key.rotate.as_ref().map(|t| self.reader.number(t, NONE)).transpose()?.unwrap_or(0.0);
+        let moved =
+            key.translate.as_ref().map(|m| self.reader.numbers::<3>(m, LENGTH)).transpose()?.unwrap_or_default();
         let height = crate::height_map::read(&path, &bytes, [0.0; 2], spacing, scale)
             .map_err(|message| self.problem.error(&key.file, format!("`{}`: {message}", path.display())))?;
         Ok(MovedHeight { height, angle, shift: [origin[0] + moved[0], origin[1] + moved[1], moved[2]] })
@@ -41,7 +42,7 @@ impl Planner<'_> {
         let (path, bytes) = self.read_file(&key.file)?;
         let mut mesh =
             crate::mesh_file::parse(&path, &bytes).map_err(|e| self.problem.error(&key.file, e.to_string()))?;
-        let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+        let keys = PlacementKeys { scale: &key.scale, rotate: &key.rotate, translate: &key.translate };
         if let Some(placement) = self.placement::<3>(&keys)? {
             let placed = mesh.vertices().iter().map(|x| placement.point(x)).collect();
             mesh = TriangleMesh::new(placed, mesh.triangles())

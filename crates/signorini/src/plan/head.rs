@@ -43,6 +43,7 @@ impl Planner<'_> {
             return Err(self.problem.error(n, format!("a run of {n} iterations")).help("give 1 or more"));
         }
         warnings.append(&mut self.warnings.borrow_mut());
+        warnings.extend(self.problem.source.renamed_keys().map(Warning::from));
         Ok(Head {
             problem: self.problem.clone(),
             units: self.reader.units,

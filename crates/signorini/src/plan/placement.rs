@@ -10,21 +10,21 @@ use signorini_geometry::{Point, Vector};
 /// The keys of a placement.
 pub(super) struct PlacementKeys<'p> {
     pub scale: &'p Option<Value>,
-    pub turn: &'p Option<Components>,
-    pub moved: &'p Option<List<Value>>,
+    pub rotate: &'p Option<Components>,
+    pub translate: &'p Option<List<Value>>,
 }
 
 impl Planner<'_> {
     /// A placement in the plane or in space: scaled about the origin of the file, turned about it, then moved; none where the
     /// keys state none.
     pub(super) fn placement<const D: usize>(&self, keys: &PlacementKeys) -> Result<Option<Similarity>, CaseError> {
-        if keys.scale.is_none() && keys.turn.is_none() && keys.moved.is_none() {
+        if keys.scale.is_none() && keys.rotate.is_none() && keys.translate.is_none() {
             return Ok(None);
         }
         let scale = keys.scale.as_ref().map_or(Ok(1.0), |scale| self.reader.positive(scale, NONE))?;
-        let shift = keys.moved.as_ref().map_or(Ok([0.0; D]), |moved| self.reader.numbers::<D>(moved, LENGTH))?;
+        let shift = keys.translate.as_ref().map_or(Ok([0.0; D]), |moved| self.reader.numbers::<D>(moved, LENGTH))?;
         let mut rotation = Vector::<3>::zeros();
-        if let Some(turn) = keys.turn {
+        if let Some(turn) = keys.rotate {
             let wanted = if D == 2 { 1 } else { 3 };
             if turn.0.len() != wanted {
                 return Err(self

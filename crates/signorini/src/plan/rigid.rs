@@ -158,8 +158,11 @@ pub(super) fn read<const D: usize>(
     rigid: &Rigid,
     around: &Aabb<3>,
 ) -> Result<RigidBody, CaseError> {
-    if let Some(lies) = &rigid.lies {
-        return Err(planner.problem.error(lies, "`lies` is only for bodies in contact with a membrane"));
+    if let Some(side @ (Side::Below | Side::Above)) = &rigid.side {
+        return Err(planner
+            .problem
+            .error(side, "`below` and `above` are for bodies in contact with a membrane")
+            .help("the sides of other bodies are \"outside\" and \"inside\""));
     }
     let keys = BesideSolids::<D> { planner };
     keys.check_round(&rigid.shape)?;
@@ -282,7 +285,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 if !matches!(surface, Geometry::Surface(_)) {
                     return Err(problem.error(&key.file, format!("`{}` is not a surface", path.display())));
                 }
-                let keys = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+                let keys = PlacementKeys { scale: &key.scale, rotate: &key.rotate, translate: &key.translate };
                 let surface = match planner.placement::<3>(&keys)? {
                     Some(placement) => placement.shape(&surface).unwrap_or(surface),
                     None => surface,

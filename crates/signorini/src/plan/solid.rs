@@ -38,7 +38,7 @@ impl Planner<'_> {
                 mesh
             }
             SolidMesh::Gmsh(g) => {
-                let placement = PlacementKeys { scale: &g.scale, turn: &g.turn, moved: &g.moved };
+                let placement = PlacementKeys { scale: &g.scale, rotate: &g.rotate, translate: &g.translate };
                 self.gmsh::<D>(&g.file, g.group.as_deref(), &placement)?
             }
             SolidMesh::Arrays(arrays) => self.mesh_of_arrays::<D>(arrays)?,

@@ -5,7 +5,7 @@ use super::placed::{Placed, field};
 use super::planner::{Planner, coordinates};
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, Lies, List, Looks, Motion, Rigid, Shape, Space};
+use crate::problem::{self, List, Looks, Motion, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
@@ -69,12 +69,10 @@ pub(super) fn read(
     scene: &mut Scene<'_>,
 ) -> Result<Contact, CaseError> {
     let problem = planner.problem;
-    if let Some(side) = &rigid.side
-        && *side == problem::Side::Inside
-    {
+    if let Some(side @ problem::Side::Inside) = &rigid.side {
         return Err(problem
             .error(side, "contact of a membrane is on the outside of a body")
-            .help("for a body above the membrane:  lies = \"above\""));
+            .help("for a body above the membrane:  side = \"above\""));
     }
     let displacement = motion(planner, rigid)?;
     let still = Placed { expression: Expression::number(0.0), key: planner.key(&rigid.shape) };
@@ -97,11 +95,10 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
     if let Some(smooth) = &rigid.smooth {
         return Err(planner.unavailable(smooth, "a smooth triangle mesh in contact with a membrane"));
     }
-    if let Some(lies) = &rigid.lies {
-        return Ok(match lies {
-            Lies::Below => Side::Below,
-            Lies::Above => Side::Above,
-        });
+    match rigid.side {
+        Some(problem::Side::Below) => return Ok(Side::Below),
+        Some(problem::Side::Above) => return Ok(Side::Above),
+        Some(problem::Side::Outside | problem::Side::Inside) | None => {}
     }
     let last = |values: &List<Value>, dimension| -> Result<f64, CaseError> {
         let Some(z) = values.last().filter(|_| values.len() >= 2) else { return Ok(0.0) };

@@ -46,7 +46,7 @@ fn loads_on_ends_are_those_of_their_place_and_never_push() {
 #[test]
 fn a_curve_touches_itself_within() {
     let told = error(&rope_on_a_drum("[contacts.grip]\nbetween = [\"line\", \"line\"]\n"));
-    assert!(told.message.contains("twice") && told.help.unwrap_or_default().contains("within = \"line\""));
+    assert!(told.message.contains("twice") && told.help.unwrap_or_default().contains("self_contact = \"line\""));
 }
 
 #[test]

@@ -246,7 +246,7 @@ fn bodies_above_are_those_below_upside_down() {
             "paraboloid = { apex = [0, 0.1, 0], axis = [0, 0, -1], radius = 1.5 }",
             "paraboloid = { apex = [0, 0.1, 0], axis = [0, 0, 1], radius = 1.5 }",
         ),
-        ("line", "height = \"-0.3*x^2\"", "height = \"0.3*x^2\"\nlies = \"above\""),
+        ("line", "height = \"-0.3*x^2\"", "height = \"0.3*x^2\"\nside = \"above\""),
     ] {
         let up = 0.12;
         let lower = touch(&pushed(space, below, up));
@@ -262,7 +262,7 @@ fn adhesion_holds_above_too() {
     let case = super::example("snap_in");
     let below = summary(case, &set(&[]));
     let turned = case
-        .replace("shape.height = \"", "lies = \"above\"\nshape.height = \"-(")
+        .replace("shape.height = \"", "side = \"above\"\nshape.height = \"-(")
         .replace("normal = \"", "normal = \"-(");
     // Every expression that was turned ends with its line.
     let turned: String = turned
@@ -452,7 +452,7 @@ fn level_sets_and_meshes_are_seen_from_above() {
 #[test]
 fn wrong_neighbours_are_told() {
     let case = pushed("plane", "height = \"-0.1\"", 0.0);
-    let lid = "[bodies.lid.rigid]\nlies = \"above\"\nshape.height = \"HEIGHT\"\n[contacts.upper]\nbetween = [\"film\", \"lid\"]\n";
+    let lid = "[bodies.lid.rigid]\nside = \"above\"\nshape.height = \"HEIGHT\"\n[contacts.upper]\nbetween = [\"film\", \"lid\"]\n";
     let with = |height: &str| case.clone() + &lid.replace("HEIGHT", height);
     for (text, word) in [
         (with("-0.2"), "no space left"),
@@ -471,7 +471,7 @@ fn wrong_neighbours_are_told() {
                 .replace("[contacts.touch]", "[contacts.touch]\nmethod.inequality_level_set = {}"),
             "another method",
         ),
-        (with("0.1").replace("lies = \"above\"\n", ""), "above the displacement"),
+        (with("0.1").replace("side = \"above\"\n", ""), "above the displacement"),
         (case.replace("between = [\"film\", \"die\"]", "between = [\"film\"]"), "rigid body"),
         (
             with("0.1").replace("[contacts.upper]\nbetween = [\"film\", \"lid\"]", "").replace(

@@ -96,7 +96,7 @@ fn each_mistake_is_told_at_its_place() {
         ),
         ("hertz", "on = \"block:left\"", "on = \"block:bottom\"", "flat group", "0", ""),
         ("punch", "force = [0, \"-10*t\"]", "normal = -1", "load of a membrane", "-1", "pressure"),
-        ("punch", "uniform = true", "", "prescribes nothing", "[supports.punch_head]", "uniform"),
+        ("punch", "tied = true", "", "prescribes nothing", "[supports.punch_head]", "tied"),
         ("torus", "minor_radius = 0.3", "minor_radius = 1.3", "not smaller", "1.3", ""),
         ("hertz", "mesh.box", "mesh.gmsh = { file = \"none.msh\" }\n# mesh.box", "cannot be read", "none.msh", ""),
     ];

@@ -177,7 +177,7 @@ path.points = [[0, 0, 0], [4, 0, 3]]
 cells = 20
 stiffness = 1e4
 pretension = 10
-winch = { at = "end", paid_out = "-0.3*t" }
+winch = { at = "end", length = "-0.3*t" }
 [supports.start]
 on = "rope:start"
 displacement = [0, 0, 0]

@@ -88,7 +88,7 @@ impl ReadDomain<2> for Planner<'_> {
     }
 
     fn mesh_of_file(&self, key: &problem::DividedGmshMesh, film: &problem::Membrane) -> Result<OnCells<2>, CaseError> {
-        let placement = PlacementKeys { scale: &key.scale, turn: &key.turn, moved: &key.moved };
+        let placement = PlacementKeys { scale: &key.scale, rotate: &key.rotate, translate: &key.translate };
         let mesh = self.gmsh::<2>(&key.file, key.group.as_deref(), &placement)?;
         self.on_mesh(mesh, &self.key(&key.file), key.divisions.as_ref(), key.refine.as_ref(), film)
     }

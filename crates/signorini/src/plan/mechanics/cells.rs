@@ -86,7 +86,7 @@ impl Planner<'_> {
                 made.integration = Integration::SubCells { subdivision: self.between(&cells.subdivision, 1, 200)? };
             }
         }
-        if let Some(value) = &key.fictitious {
+        if let Some(value) = &key.alpha {
             made.fictitious = self.reader.number(value, NONE)?;
         }
         made.islands = match key.islands {
@@ -113,7 +113,7 @@ impl Planner<'_> {
             let at = match &e {
                 CellsError::Memory { .. } | CellsError::Box { .. } => problem.key(&key.mesh.grid),
                 CellsError::Fictitious { .. } => {
-                    key.fictitious.as_ref().map_or_else(|| problem.key(&key.geometry), |value| problem.key(value))
+                    key.alpha.as_ref().map_or_else(|| problem.key(&key.geometry), |value| problem.key(value))
                 }
                 CellsError::EmptyPlace { place, .. } => group(place).unwrap_or_else(|| problem.key(&key.geometry)),
                 _ => problem.key(&key.geometry),

@@ -27,12 +27,12 @@ impl Planner<'_> {
             if let Some(adhesion) = &key.adhesion {
                 return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
             }
-            let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.within, &key.all) {
+            let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.self_contact, &key.all) {
                 (Some(pair), None, None) if pair.len() == 2 && pair[0].trim() == pair[1].trim() => {
                     let message = format!("`between` names `{}` twice", pair[0].trim());
                     return Err(problem
                         .error(pair, message)
-                        .help(format!("for self-contact:  within = \"{}\"", pair[0].trim())));
+                        .help(format!("for self-contact:  self_contact = \"{}\"", pair[0].trim())));
                 }
                 (Some(pair), None, None) if pair.len() == 2 => vec![(name.clone(), [&pair[0], &pair[1]])],
                 (None, Some(body), None) => vec![(name.clone(), [body, body])],
@@ -53,9 +53,9 @@ impl Planner<'_> {
                     tested.into_iter().map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
                 }
                 _ => {
-                    return Err(problem
-                        .error(key, "the bodies of the contact are missing")
-                        .help("between = [\"BODY\", \"BODY\"], slave first; or  within = \"BODY\"; or  all = true"));
+                    return Err(problem.error(key, "the bodies of the contact are missing").help(
+                        "between = [\"BODY\", \"BODY\"], slave first; or  self_contact = \"BODY\"; or  all = true",
+                    ));
                 }
             };
             for (name, pair) in pairs {
@@ -118,7 +118,7 @@ impl Planner<'_> {
         if let Some(found) = self.by_mortar(name, key, [&slave, &master], (system, kinds))? {
             return Ok(found);
         }
-        if let Some(Method::DiscreteCell(stated)) = &key.method {
+        if let Some(Method::Discs(stated)) = &key.method {
             return self.by_discs(name, key, stated, [&slave, &master], system);
         }
         let kind = &kinds[slave.body];
@@ -256,7 +256,7 @@ impl Planner<'_> {
                 _ => Centres::Within,
             },
         };
-        let wanted = stated.penalty.as_ref().map(|p| length(&p.wanted_penetration)).transpose()?.flatten();
+        let wanted = stated.penalty.as_ref().map(|p| length(&p.penetration)).transpose()?.flatten();
         let body = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
         let other = (first != second).then(|| body(second));
         let (pairs, found) = DiscPairs::new(name, body(first), other, &cover, wanted)
@@ -292,7 +292,7 @@ impl Planner<'_> {
                 ));
             }
         }
-        let tested = Tested { notes, warnings, ..Tested::by("discrete_cell", AxisChoice::Material) };
+        let tested = Tested { notes, warnings, ..Tested::by("discs", AxisChoice::Material) };
         Ok((Box::new(pairs), tested))
     }
 
@@ -320,7 +320,7 @@ impl Planner<'_> {
 
     /// The penetration that a penalty may leave; none where it is left to the program.
     fn wanted_penetration(&self, key: &problem::Penalty) -> Result<Option<f64>, CaseError> {
-        key.wanted_penetration.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose()
+        key.penetration.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose()
     }
 
     /// Where contact is tested, how it is kept, and the method in a word.

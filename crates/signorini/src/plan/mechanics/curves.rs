@@ -254,7 +254,7 @@ impl Planner<'_> {
         let told = |e: String| self.problem.error(&file.file, format!("`{}`: {e}", path.display()));
         let text = String::from_utf8(bytes).map_err(|e| told(e.to_string()))?;
         let mut points = Path::read_points(&text).map_err(|e| told(e.to_string()))?;
-        let keys = PlacementKeys { scale: &file.scale, turn: &file.turn, moved: &file.moved };
+        let keys = PlacementKeys { scale: &file.scale, rotate: &file.rotate, translate: &file.translate };
         if let Some(placement) = self.placement::<3>(&keys)? {
             points.iter_mut().for_each(|x| *x = placement.point(x));
         }

@@ -132,8 +132,8 @@ impl Planner<'_> {
         for (name, key) in &problem.supports {
             let part = self.part(&key.on, numbers)?;
             let is_solid = matches!(problem.bodies.get(system.bodies[part.body].name()), Some(Body::Solid(_)));
-            if let Some(uniform) = key.uniform.as_ref().filter(|_| !is_solid) {
-                return Err(problem.error(uniform, "`uniform` is only for solids"));
+            if let Some(tied) = key.tied.as_ref().filter(|_| !is_solid) {
+                return Err(problem.error(tied, "`tied` is only for solids"));
             }
             let mut displacement = match &key.displacement {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
@@ -163,7 +163,7 @@ impl Planner<'_> {
                 }
             }
             let mut uniform = [false; 3];
-            if key.uniform.as_ref().is_some_and(|u| *u) {
+            if key.tied.as_ref().is_some_and(|u| *u) {
                 (0..self.dimension()).for_each(|k| uniform[k] = displacement[k].is_none());
             }
             let rotation = match &key.rotation {
@@ -179,7 +179,7 @@ impl Planner<'_> {
             if !holds && key.spring.is_none() {
                 return Err(problem
                     .error(key, format!("the support `{name}` prescribes nothing"))
-                    .help("add  displacement = [0, 0, 0]  or  normal = 0  or  uniform = true  or  rotation = [0, 0, 0]  or  spring = […]"));
+                    .help("add  displacement = [0, 0, 0]  or  normal = 0  or  tied = true  or  rotation = [0, 0, 0]  or  spring = […]"));
             }
             if holds {
                 let support = Support { name: name.clone(), part, displacement, rotation, along, uniform };

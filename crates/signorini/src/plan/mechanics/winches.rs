@@ -72,7 +72,7 @@ impl Planner<'_> {
                 .error(&key.at, format!("the {end} of `{name}` has a winch but no support"))
                 .help(format!("[supports.winch]  on = \"{name}:{end}\"  displacement = [0, 0, 0]")));
         }
-        let field = self.field(&key.paid_out, LENGTH, wrong)?;
+        let field = self.field(&key.length, LENGTH, wrong)?;
         let zero = Point::<3>::zeros();
         let (mut most, mut least, mut before) = (0.0f64, 0.0f64, 0.0);
         for time in self.times()? {
@@ -90,7 +90,7 @@ impl Planner<'_> {
         let cell = whole / chain.elements() as f64;
         if whole + least < 0.5 * cell {
             let message = format!("{:.4} of rope are taken in, but only {whole:.4} are paid out", -least);
-            return Err(problem.error(&key.paid_out, message).help("leave at least half a cell of rope"));
+            return Err(problem.error(&key.length, message).help("leave at least half a cell of rope"));
         }
         let paid_out = Arc::new(move |t: f64| field(&zero, t));
         chain.with_winch(at, most, paid_out).map_err(|e| problem.error(key, e.to_string()))

@@ -116,12 +116,12 @@ impl<const D: usize> MembranePlan<D> {
                     let (place, help) = match obstacle.side {
                         Side::Below => (
                             "above",
-                            "lower the body there, or raise the support; for a body above the membrane:  lies = \
+                            "lower the body there, or raise the support; for a body above the membrane:  side = \
                              \"above\"",
                         ),
                         Side::Above => (
                             "below",
-                            "raise the body there, or lower the support; for a body below the membrane:  lies = \
+                            "raise the body there, or lower the support; for a body below the membrane:  side = \
                              \"below\"",
                         ),
                     };

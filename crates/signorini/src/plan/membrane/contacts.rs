@@ -82,7 +82,7 @@ impl Planner<'_> {
         let problem = self.problem;
         let rigid: Vec<&str> =
             problem.bodies.iter().filter(|(_, b)| matches!(b, Body::Rigid(_))).map(|(n, _)| n.as_str()).collect();
-        match (&key.between, &key.within, &key.all) {
+        match (&key.between, &key.self_contact, &key.all) {
             (Some(pair), None, None) => {
                 let bodies: Vec<&str> = problem.bodies.keys().map(String::as_str).collect();
                 for b in pair {

@@ -34,7 +34,7 @@ impl Planner<'_> {
             };
             let others = [
                 ("normal", key.normal.as_ref().map(|v| self.key(v))),
-                ("uniform", key.uniform.as_ref().map(|v| self.key(v))),
+                ("tied", key.tied.as_ref().map(|v| self.key(v))),
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {

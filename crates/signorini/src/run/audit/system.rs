@@ -165,8 +165,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             Carried::Pressure => Carries::Traction,
         };
         let penalty = problem.contacts.get(contact.name()).and_then(|key| penalty_of(key.method.as_ref()?));
-        let wanted =
-            penalty.and_then(|p| planner.as_ref()?.reader.positive(p.wanted_penetration.as_ref()?, LENGTH).ok());
+        let wanted = penalty.and_then(|p| planner.as_ref()?.reader.positive(p.penetration.as_ref()?, LENGTH).ok());
         Contact {
             name: contact.name().to_string(),
             bodies,
@@ -174,7 +173,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             is_small_sliding: tested.slides_little,
             carries,
             wanted_penetration: wanted.unwrap_or(0.0),
-            at_places: !["mortar", "discrete_cell"].contains(&tested.method),
+            at_places: !["mortar", "discs"].contains(&tested.method),
         }
     };
     (0..plan.system.contacts.len()).map(contact).collect()
@@ -185,7 +184,7 @@ fn penalty_of(method: &Method) -> Option<&Penalty> {
     let enforcement = match method {
         Method::Mortar(m) | Method::GaussPoint(m) | Method::Node(m) | Method::CellSurface(m) => m.enforcement.as_ref(),
         Method::Curve(m) => m.enforcement.as_ref(),
-        Method::DiscreteCell(m) => return m.penalty.as_ref(),
+        Method::Discs(m) => return m.penalty.as_ref(),
         _ => None,
     };
     match enforcement {

@@ -6,7 +6,9 @@
 //! if left out).
 
 use signorini_cells::shapes::ball;
-use signorini_cells::{CellBody, CellSolid, CellTree, Discretisation, Domain, Elastic, Place, Region, Space, Stuff};
+use signorini_cells::{
+    CellBody, CellMaterial, CellSolid, CellTree, Discretisation, Domain, Elastic, Place, Region, Space,
+};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Aabb, Vector};
@@ -23,8 +25,8 @@ fn run(degree: usize, n: usize) {
     let region: Arc<dyn Region<3>> = Arc::new(Domain::shape(ball(V::z(), 1.0)));
     let tree = CellTree::new(Aabb::new(V::zeros(), V::new(1.0, 1.0, 1.0)), [n; 3]).expect("cells");
     let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
-    let stuff = Stuff { elastic, modulus: None, space: Space::Solid };
-    let body = CellBody::new(region, tree, Discretisation::of_degree(degree), stuff).expect("a body");
+    let material = CellMaterial { elastic, modulus: None, space: Space::Solid };
+    let body = CellBody::new(region, tree, Discretisation::of_degree(degree), material).expect("a body");
     let sides = [("left", Place::low(0)), ("front", Place::low(1)), ("top", Place::high(2))];
     let places: BTreeMap<String, Place<3>> = sides.map(|(name, side)| (name.to_string(), side)).into();
     let ball = CellSolid::new("ball", body, &places).expect("a solid");

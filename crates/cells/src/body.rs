@@ -4,7 +4,7 @@
 //! Rank, Comput. Mech. 41, 2007). Cells without material are left out. Unknown `D f + k` is component `k` of function `f`.
 
 use crate::components::{PieceGraph, faces_itself, is_narrow};
-use crate::discretisation::{Boundary, Discretisation, Stuff, check};
+use crate::discretisation::{Boundary, CellMaterial, Discretisation, check};
 use crate::error::CellsError;
 use crate::memory::check_memory;
 use crate::moments::VolumePoints;
@@ -69,7 +69,7 @@ pub struct CellBody<const D: usize> {
     pub(crate) region: Arc<dyn Region<D>>,
     pub(crate) tree: CellTree<D>,
     pub(crate) discretisation: Discretisation<D>,
-    pub(crate) stuff: Stuff<D>,
+    pub(crate) material: CellMaterial<D>,
     pub(crate) cells: Vec<Cell<D>>,
     /// Cells of each leaf.
     pub(crate) of_leaf: Vec<Vec<usize>>,
@@ -87,12 +87,12 @@ impl<const D: usize> CellBody<D> {
         region: Arc<dyn Region<D>>,
         mut tree: CellTree<D>,
         discretisation: Discretisation<D>,
-        stuff: Stuff<D>,
+        material: CellMaterial<D>,
     ) -> Result<Self, CellsError> {
-        check(&*region, &tree, &discretisation, &stuff)?;
+        check(&*region, &tree, &discretisation, &material)?;
         let fits = discretisation.volume_points == VolumePoints::Fitted
-            && stuff.modulus.is_none()
-            && stuff.space != Space::Axisymmetric;
+            && material.modulus.is_none()
+            && material.space != Space::Axisymmetric;
         let rules_of = |tree: &CellTree<D>| -> Vec<MaterialRule<D>> {
             let one = |leaf: &crate::tree::Leaf<D>| {
                 let mut rule = region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree);
@@ -142,7 +142,7 @@ impl<const D: usize> CellBody<D> {
             region,
             tree,
             discretisation,
-            stuff,
+            material,
             cells: Vec::new(),
             functions: Vec::new(),
             findings,
@@ -169,11 +169,11 @@ impl<const D: usize> CellBody<D> {
     }
 
     pub fn space(&self) -> Space {
-        self.stuff.space
+        self.material.space
     }
 
     pub fn elastic(&self) -> &Elastic {
-        &self.stuff.elastic
+        &self.material.elastic
     }
 
     /// Cells with material.
@@ -256,7 +256,7 @@ impl<const D: usize> CellBody<D> {
 
     /// The factor of quadrature weights: 1, or the circumference around an axis.
     pub fn turn(&self, x: &Point<D>) -> f64 {
-        if self.stuff.space == Space::Axisymmetric { std::f64::consts::TAU * x[0] } else { 1.0 }
+        if self.material.space == Space::Axisymmetric { std::f64::consts::TAU * x[0] } else { 1.0 }
     }
 
     /// The points of the recovered boundary in a place.
@@ -302,7 +302,7 @@ impl<const D: usize> CellBody<D> {
     /// Gauss points in each direction of a full cell: exact for the stiffness; with a modulus that varies, and around an
     /// axis where `1/r` is no polynomial, a few more.
     pub(crate) fn full_points(&self) -> usize {
-        let varies = self.stuff.modulus.is_some() || self.stuff.space == Space::Axisymmetric;
+        let varies = self.material.modulus.is_some() || self.material.space == Space::Axisymmetric;
         self.degree() + if varies { 3 } else { 1 }
     }
 }

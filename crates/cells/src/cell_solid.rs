@@ -38,7 +38,7 @@ use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Function, Hold, Load, Master, Order,
-    PlaceError, Placed, Samples, Sampling, Subspaces,
+    PlaceError, Samples, Sampling, SlavePoint, Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -355,7 +355,7 @@ impl<const D: usize> Body for CellSolid<D> {
         Ok((sites, (2.0 * far).max(1.0) * spacing))
     }
 
-    fn placed(&self, state: &BodyState, site: &mechanics::Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &mechanics::Site) -> SlavePoint {
         let number = site.patch as usize;
         let point = &self.points[number];
         let mut t = Tabulation::default();
@@ -371,7 +371,7 @@ impl<const D: usize> Body for CellSolid<D> {
         }
         let (x, normal) = self.point_now(number, &state.configuration);
         let outward = (normal != Vector::<3>::zeros()).then_some(normal);
-        Placed { x, outward, functions, frame: Matrix::<3>::identity(), ..Placed::default() }
+        SlavePoint { x, outward, functions, frame: Matrix::<3>::identity(), ..SlavePoint::default() }
     }
 
     fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {

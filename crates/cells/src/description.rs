@@ -8,7 +8,7 @@ mod shape;
 use crate::body::{CellBody, Findings};
 use crate::cell_solid::CellSolid;
 use crate::components::Pieces;
-use crate::discretisation::{Boundary, Discretisation, Islands, Stuff};
+use crate::discretisation::{Boundary, CellMaterial, Discretisation, Islands};
 use crate::error::CellsError;
 use crate::facets::FacetBody;
 use crate::image::ImageData;
@@ -200,7 +200,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         refine_narrow,
         memory: d.memory,
     };
-    let body = CellBody::new(region, tree, setup, Stuff { elastic: d.elastic, modulus, space: d.space })?;
+    let body = CellBody::new(region, tree, setup, CellMaterial { elastic: d.elastic, modulus, space: d.space })?;
     let (findings, volume, cells) = (body.findings().clone(), body.volume(), body.cells().len());
     let places = d.places.iter().map(|(name, part)| (name.clone(), part.place::<D>())).collect();
     let body = CellSolid::new(&d.name, body, &places)?;

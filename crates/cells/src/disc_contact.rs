@@ -17,9 +17,10 @@ use crate::spread::SAME_FACE;
 use signorini_contact::{Law, Status};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::interaction::{Around, NotItsHistory, penalty_factor};
+use signorini_mechanics::interaction::{NotItsHistory, OuterIteration, penalty_factor};
 use signorini_mechanics::{
-    Bodies, Body, Function, Interaction, Own, PlaceError, Sampling, SimplerFriction, Site, SiteResult, Target,
+    Assembler, Bodies, Body, Function, Interaction, InteractionUnknowns, PlaceError, Sampling, SimplerFriction, Site,
+    SiteResult,
 };
 use std::collections::BTreeMap;
 
@@ -35,7 +36,7 @@ pub enum Centres {
 /// How a surface is covered by discs. What is left out is found: the radius from the spacing, the spacing from the radius,
 /// and without both from the functions of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cover {
+pub struct DiscCovering {
     pub radius: Option<f64>,
     pub spacing: Option<f64>,
     pub centres: Centres,
@@ -114,7 +115,7 @@ struct Overlap {
 }
 
 impl Surface {
-    fn new((part, body): (Part, &dyn Body), cover: &Cover) -> Result<(Self, CoverFindings), PlaceError> {
+    fn new((part, body): (Part, &dyn Body), cover: &DiscCovering) -> Result<(Self, CoverFindings), PlaceError> {
         let on = part.group.as_deref();
         let spacing = match (cover.spacing, cover.radius) {
             (Some(spacing), _) => spacing,
@@ -183,7 +184,7 @@ impl DiscPairs {
         name: &str,
         first: (Part, &dyn Body),
         second: Option<(Part, &dyn Body)>,
-        cover: &Cover,
+        cover: &DiscCovering,
         wanted: Option<f64>,
     ) -> Result<(Self, Vec<CoverFindings>), PlaceError> {
         let mut surfaces = Vec::new();
@@ -274,7 +275,7 @@ impl Interaction for DiscPairs {
 
     fn prepare(&mut self, _: &[Box<dyn Body>], _: f64) {}
 
-    fn add_to(&self, at: Bodies<'_>, _: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+    fn add_to(&self, at: Bodies<'_>, _: InteractionUnknowns<'_>, out: &mut Assembler<'_>) -> Result<usize, PlaceError> {
         let now = self.now(at);
         for Overlap { pair: [i, j], depth, distance, q, stiffness } in self.overlaps(&now) {
             let force = q * (stiffness * depth);
@@ -299,7 +300,7 @@ impl Interaction for DiscPairs {
         Ok(0)
     }
 
-    fn results(&self, at: Bodies<'_>, _: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+    fn results(&self, at: Bodies<'_>, _: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         let now = self.now(at);
         let mut forces = vec![Vector::<3>::zeros(); now.len()];
         let mut deepest = vec![0.0f64; now.len()];
@@ -328,13 +329,19 @@ impl Interaction for DiscPairs {
         Ok(self.discs().enumerate().take(self.surfaces[0].discs.len()).map(result).collect())
     }
 
-    fn accept(&mut self, _: Bodies<'_>, _: Own<'_>) -> Result<(), PlaceError> {
+    fn accept(&mut self, _: Bodies<'_>, _: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         Ok(())
     }
 
     fn unload(&mut self) {}
 
-    fn augment(&mut self, _: Bodies<'_>, _: Own<'_>, found: &[SiteResult], _: Around) -> Result<f64, PlaceError> {
+    fn augment(
+        &mut self,
+        _: Bodies<'_>,
+        _: InteractionUnknowns<'_>,
+        found: &[SiteResult],
+        _: OuterIteration,
+    ) -> Result<f64, PlaceError> {
         let factor = self.wanted.and_then(|wanted| penalty_factor(found, wanted));
         self.factor *= factor.unwrap_or(1.0);
         Ok(factor.map_or(0.0, |f| (f - 1.0).abs()))
@@ -342,7 +349,7 @@ impl Interaction for DiscPairs {
 
     fn simplify(&mut self, _: SimplerFriction) {}
 
-    fn restate(&mut self) {}
+    fn restore_law(&mut self) {}
 
     fn history(&self) -> [Vec<f64>; 2] {
         [Vec::new(), vec![self.factor]]

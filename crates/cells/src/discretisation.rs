@@ -69,7 +69,7 @@ impl<const D: usize> Discretisation<D> {
 
 /// What the body is made of.
 #[derive(Clone)]
-pub struct Stuff<const D: usize> {
+pub struct CellMaterial<const D: usize> {
     pub elastic: Elastic,
     /// A factor of Young's modulus that varies in space, with its largest value.
     pub modulus: Option<(Field<D>, f64)>,
@@ -82,7 +82,7 @@ pub(crate) fn check<const D: usize>(
     region: &dyn Region<D>,
     tree: &CellTree<D>,
     discretisation: &Discretisation<D>,
-    stuff: &Stuff<D>,
+    material: &CellMaterial<D>,
 ) -> Result<(), CellsError> {
     let degree = discretisation.degree;
     if !(1..=MAX_DEGREE).contains(&degree) {
@@ -91,7 +91,7 @@ pub(crate) fn check<const D: usize>(
     if !(0.0..1.0).contains(&discretisation.fictitious) {
         return Err(CellsError::Fictitious { value: discretisation.fictitious });
     }
-    let Elastic { youngs_modulus, poissons_ratio } = stuff.elastic;
+    let Elastic { youngs_modulus, poissons_ratio } = material.elastic;
     if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
         return Err(CellsError::Value { name: "youngs_modulus", value: youngs_modulus, must: "must be positive" });
     }
@@ -102,7 +102,7 @@ pub(crate) fn check<const D: usize>(
     if let Integration::SubCells { subdivision: 0 } = discretisation.integration {
         return Err(CellsError::Value { name: "subdivision", value: 0.0, must: "must be 1 or more" });
     }
-    if stuff.space == Space::Axisymmetric && tree.bounds().min[0] < 0.0 {
+    if material.space == Space::Axisymmetric && tree.bounds().min[0] < 0.0 {
         return Err(CellsError::NegativeRadius { radius: tree.bounds().min[0] });
     }
     check_memory(region, tree, discretisation)?;

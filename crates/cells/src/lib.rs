@@ -48,7 +48,7 @@ pub mod voxels;
 pub use body::{Cell, CellBody, Field, Findings, Site};
 pub use cell_solid::CellSolid;
 pub use components::Pieces;
-pub use discretisation::{Boundary, Discretisation, Islands, Stuff};
+pub use discretisation::{Boundary, CellMaterial, Discretisation, Islands};
 pub use error::CellsError;
 pub use moments::VolumePoints;
 pub use place::Place;

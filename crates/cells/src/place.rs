@@ -78,7 +78,7 @@ impl<const D: usize> CellBody<D> {
 
     /// Whether a point lies on the axis around which the body turns, where a boundary has no area.
     fn is_on_axis(&self, x: &Point<D>) -> bool {
-        self.stuff.space == Space::Axisymmetric && x[0] <= 1e-12 * self.tree.bounds().max[0]
+        self.material.space == Space::Axisymmetric && x[0] <= 1e-12 * self.tree.bounds().max[0]
     }
 
     /// That nothing lies in a place, with the box of the cells with material.

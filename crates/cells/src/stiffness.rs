@@ -49,7 +49,7 @@ impl<const D: usize> CellBody<D> {
                 let alpha = self.discretisation.fictitious;
                 let points = self.weighted(cell.rule.volume.iter().map(|p| (p.x, p.weight)));
                 let order = 2 * self.degree() + 1;
-                let fits = self.stuff.space != Space::Axisymmetric
+                let fits = self.material.space != Space::Axisymmetric
                     && alpha > FITTED_ABOVE
                     && points.len() >= order.pow(D as u32);
                 let inside = if fits {
@@ -67,7 +67,7 @@ impl<const D: usize> CellBody<D> {
     fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {
         let order = self.full_points();
         let points = self.weighted(box_points(&self.tree.leaves()[cell.leaf].bounds, order).into_iter());
-        if self.stuff.space == Space::Axisymmetric {
+        if self.material.space == Space::Axisymmetric {
             return self.integrate(cell, &points);
         }
         self.integrate_on_grid(cell, order, &points.iter().map(|p| p.1).collect::<Vec<_>>())
@@ -80,7 +80,7 @@ impl<const D: usize> CellBody<D> {
 
     fn integrate(&self, cell: &Cell<D>, points: &[(Point<D>, f64)]) -> DMatrix<f64> {
         let n = cell.functions.len();
-        let axis = self.stuff.space == Space::Axisymmetric;
+        let axis = self.material.space == Space::Axisymmetric;
         let leaf = &self.tree.leaves()[cell.leaf];
         let channels = D + usize::from(axis);
         let mut g: Vec<DMatrix<f64>> = vec![DMatrix::zeros(n, n); channels * channels];
@@ -123,8 +123,8 @@ impl<const D: usize> CellBody<D> {
 
     /// The stiffness from the integrals `G_ac` with `c <= a`.
     fn stiffness_from(&self, mut g: Vec<DMatrix<f64>>) -> DMatrix<f64> {
-        let axis = self.stuff.space == Space::Axisymmetric;
-        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
+        let axis = self.material.space == Space::Axisymmetric;
+        let (lambda, mu) = self.material.elastic.lame(self.material.space);
         let channels = D + usize::from(axis);
         let n = g[0].nrows();
         for a in 0..channels {
@@ -164,12 +164,12 @@ impl<const D: usize> CellBody<D> {
 
     /// Whether the stiffness of a full cell does not depend on where it lies.
     fn is_homogeneous(&self) -> bool {
-        self.stuff.modulus.is_none() && self.stuff.space != Space::Axisymmetric
+        self.material.modulus.is_none() && self.material.space != Space::Axisymmetric
     }
 
     /// The factor of Young's modulus at a point, kept above the fictitious stiffness.
     pub(crate) fn modulus_factor(&self, x: &Point<D>) -> f64 {
-        match &self.stuff.modulus {
+        match &self.material.modulus {
             Some((factor, most)) => factor(x).max(self.discretisation.fictitious * most),
             None => 1.0,
         }
@@ -177,14 +177,14 @@ impl<const D: usize> CellBody<D> {
 
     /// The traction `σ(N_j e_b) n` of every unknown of a cell at a point, from its functions there.
     pub fn tractions(&self, x: &Point<D>, normal: &Vector<D>, t: &Tabulation<D>) -> Vec<Vector<D>> {
-        let (lambda, mu) = self.stuff.elastic.lame(self.stuff.space);
+        let (lambda, mu) = self.material.elastic.lame(self.material.space);
         let factor = self.modulus_factor(x);
         let mut out = Vec::with_capacity(D * t.value.len());
         for (value, gradient) in t.value.iter().zip(&t.gradient) {
             let along = gradient.dot(normal);
             for b in 0..D {
                 let mut divergence = gradient[b];
-                if b == 0 && self.stuff.space == Space::Axisymmetric {
+                if b == 0 && self.material.space == Space::Axisymmetric {
                     divergence += value / x[0];
                 }
                 let mut traction = normal * (lambda * divergence) + gradient * (mu * normal[b]);
@@ -197,6 +197,6 @@ impl<const D: usize> CellBody<D> {
 
     /// The stress at a point of a cell, from the gradient of the displacement there, in space.
     pub fn stress_at(&self, x: &Point<D>, gradient: &Matrix3<f64>) -> Matrix3<f64> {
-        self.stuff.elastic.stress(self.stuff.space, gradient) * self.modulus_factor(x)
+        self.material.elastic.stress(self.material.space, gradient) * self.modulus_factor(x)
     }
 }

@@ -138,7 +138,7 @@ impl<const D: usize> ModulusImage<D> {
         Ok(ModulusImage { voxels })
     }
 
-    /// The factor of the modulus in space, with its largest value, for [`crate::Stuff::modulus`].
+    /// The factor of the modulus in space, with its largest value, for [`crate::CellMaterial::modulus`].
     pub fn modulus(&self) -> (crate::body::Field<D>, f64) {
         let most = self.voxels.values.iter().fold(0.0f64, |m, v| m.max(*v));
         let voxels = self.voxels.clone();

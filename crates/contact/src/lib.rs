@@ -24,10 +24,10 @@ pub mod zone;
 
 pub use face_maps::FaceMaps;
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
-pub use mortar::{Shares, compress, shares, shares_on_the_way, weightless};
-pub use multiplier::{Given, PressureNodes};
+pub use mortar::{DualWeights, compress, dual_weights_unmerged, shares, weightless};
+pub use multiplier::{MergedNode, PressureNodes};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, pieces, segments, whole_faces};
 pub use signorini_geometry::rigid_shape::GapJet;
-pub use surface::{ContactSurface, FacePoint, Moved, ShapeFunction, looks_at};
+pub use surface::{ContactSurface, FacePoint, Moved, ShapeFunction, is_facing};
 pub use zone::{ContactZone, NodeState, connected, zone};

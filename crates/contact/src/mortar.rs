@@ -6,7 +6,7 @@
 //! quadratic triangles have no weight of their own and take a share of their neighbours (Popp, Wohlmuth, Gee & Wall
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
-use crate::multiplier::{Given, PressureNodes};
+use crate::multiplier::{MergedNode, PressureNodes};
 use crate::segments::GapPoint;
 use crate::surface::{ContactSurface, FacePoint};
 use nalgebra::DMatrix;
@@ -25,35 +25,35 @@ const SHARE: f64 = 0.2;
 
 /// How much every point counts for which pressure node.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shares {
+pub struct DualWeights {
     /// For every point of every face: nodes, and value of the dual function times the weight of the point.
     pub of_point: Vec<Vec<Vec<(u32, f64)>>>,
     /// `∫ ψ_k` over the covered part, by node; zero for nodes without a row of their own.
     pub weight: Vec<f64>,
-    pub given: Vec<Given>,
+    pub given: Vec<MergedNode>,
 }
 
 /// The dual functions of all pressure nodes at the points.
 ///
-/// `folded` says which nodes must not have a pressure of their own, for example where the displacement is prescribed.
+/// `merged` says which nodes must not have a pressure of their own, for example where the displacement is prescribed.
 pub fn shares<const D: usize>(
     slave: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
-    folded: &dyn Fn(u32) -> bool,
-) -> Shares {
-    shares_above(WEAK, slave, nodes, points, folded)
+    merged: &dyn Fn(u32) -> bool,
+) -> DualWeights {
+    shares_above(WEAK, slave, nodes, points, merged)
 }
 
 /// The same for sides that slide: nodes that are hardly covered keep their functions, since what they gave away would jump
 /// from node to node. Their weights may be small, or for high degrees even negative.
-pub fn shares_on_the_way<const D: usize>(
+pub fn dual_weights_unmerged<const D: usize>(
     slave: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
-    folded: &dyn Fn(u32) -> bool,
-) -> Shares {
-    shares_above(f64::NEG_INFINITY, slave, nodes, points, folded)
+    merged: &dyn Fn(u32) -> bool,
+) -> DualWeights {
+    shares_above(f64::NEG_INFINITY, slave, nodes, points, merged)
 }
 
 /// The dual functions, of which nodes with less than a part of their weight give theirs away.
@@ -62,9 +62,9 @@ fn shares_above<const D: usize>(
     slave: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
     points: &[Vec<GapPoint<D>>],
-    folded: &dyn Fn(u32) -> bool,
-) -> Shares {
-    let mut out = Shares { of_point: Vec::new(), weight: vec![0.0; nodes.len()], given: Vec::new() };
+    merged: &dyn Fn(u32) -> bool,
+) -> DualWeights {
+    let mut out = DualWeights { of_point: Vec::new(), weight: vec![0.0; nodes.len()], given: Vec::new() };
     let mut whole = vec![0.0; nodes.len()];
     let mut covered = vec![false; nodes.len()];
     let mut at = Values::default();
@@ -109,11 +109,11 @@ fn shares_above<const D: usize>(
     // On the axis of a body of revolution a vertex of quadratic faces has no weight at all.
     let weightless = without_integral(slave, nodes, &quadratic_triangle);
     let weak: Vec<bool> = (0..nodes.len())
-        .map(|k| out.weight[k] < least * whole[k] || covered[k] && (weightless[k] || folded(k as u32)))
+        .map(|k| out.weight[k] < least * whole[k] || covered[k] && (weightless[k] || merged(k as u32)))
         .collect();
     for [from, to] in fold(nodes, &weak, &covered) {
         out.weight[to as usize] += std::mem::take(&mut out.weight[from as usize]);
-        out.given.push(Given { from, to, weightless: weightless[from as usize] });
+        out.given.push(MergedNode { from, to, weightless: weightless[from as usize] });
     }
     if !out.given.is_empty() {
         let mut target: Vec<u32> = (0..nodes.len() as u32).collect();
@@ -131,12 +131,12 @@ fn shares_above<const D: usize>(
 pub fn weightless<const D: usize>(
     slave: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
-    folded: &dyn Fn(u32) -> bool,
-) -> Vec<Given> {
+    merged: &dyn Fn(u32) -> bool,
+) -> Vec<MergedNode> {
     let weightless = without_integral(slave, nodes, &|_, _| None);
-    let weak: Vec<bool> = (0..nodes.len()).map(|k| weightless[k] || folded(k as u32)).collect();
+    let weak: Vec<bool> = (0..nodes.len()).map(|k| weightless[k] || merged(k as u32)).collect();
     let pairs = fold(nodes, &weak, &vec![true; nodes.len()]);
-    pairs.into_iter().map(|[from, to]| Given { from, to, weightless: weightless[from as usize] }).collect()
+    pairs.into_iter().map(|[from, to]| MergedNode { from, to, weightless: weightless[from as usize] }).collect()
 }
 
 /// Whether the functions of the nodes have no integral on flat faces. A little curvature gives them a little, of either

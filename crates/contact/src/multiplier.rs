@@ -161,7 +161,7 @@ fn place(shape: CellShape, vertices: &[u32], face: usize, node: usize, s: &Local
 
 /// A node that gave its function to another and shares its pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Given {
+pub struct MergedNode {
     pub from: u32,
     pub to: u32,
     /// Because its function has no weight anywhere.

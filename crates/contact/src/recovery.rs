@@ -8,7 +8,7 @@
 //! On the axis of a body of revolution the functions of degree 2 and more have no integral with the weight of the radius
 //! either; there the pressure is the one whose slope along the radius vanishes.
 
-use crate::multiplier::{Given, PressureNodes};
+use crate::multiplier::{MergedNode, PressureNodes};
 use crate::surface::ContactSurface;
 use signorini_basis::Local;
 use signorini_basis::hierarchic::Values;
@@ -73,7 +73,7 @@ pub fn recovered<const D: usize>(
     points: &[Pressed],
     multiplier: &[f64],
     active: &[bool],
-    given: &[Given],
+    given: &[MergedNode],
 ) -> Vec<f64> {
     let mut out = multiplier.to_vec();
     let mut known = vec![false; nodes.len()];

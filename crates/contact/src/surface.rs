@@ -58,7 +58,7 @@ pub trait ContactSurface<const D: usize>: Sync {
 
 /// Whether a surface with this outward normal, of any length, looks at something whose outward unit normal is the other:
 /// a pressure can only push it inwards.
-pub fn looks_at<const D: usize>(own: &Point<D>, other: &Point<D>) -> bool {
+pub fn is_facing<const D: usize>(own: &Point<D>, other: &Point<D>) -> bool {
     own.dot(other) < -1e-6 * own.norm()
 }
 

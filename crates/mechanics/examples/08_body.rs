@@ -7,7 +7,7 @@ use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contact, Contribution, Enforcement, Function, Hold, Load,
-    Master, Motion, Order, Part, PlaceError, Placed, PlacedLoad, RigidBody, Sampling, Site, System, TimedLoad,
+    Master, Motion, Order, Part, PlaceError, PlacedLoad, RigidBody, Sampling, Site, SlavePoint, System, TimedLoad,
 };
 use std::sync::Arc;
 
@@ -75,13 +75,13 @@ impl Body for SprungPoint {
     fn sites(&self, _: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
         Ok(vec![Site { weight: 1.0, ..Site::default() }])
     }
-    fn placed(&self, state: &BodyState, _: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, _: &Site) -> SlavePoint {
         let function = |i: usize| Function { unknown: i as u32, value: axis(i), ..Function::default() };
-        Placed {
+        SlavePoint {
             x: self.at + Self::moved(state),
             functions: (0..3).map(function).collect(),
             frame: Matrix::<3>::identity(),
-            ..Placed::default()
+            ..SlavePoint::default()
         }
     }
     fn master<'a>(&'a self, _: Option<&str>, _: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {

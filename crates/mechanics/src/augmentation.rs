@@ -4,7 +4,7 @@
 use crate::equilibrium::ROUNDING;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
-use crate::interaction::{Around, Bodies, Interaction};
+use crate::interaction::{Bodies, Interaction, OuterIteration};
 use crate::linear_solver::Solved;
 use crate::points::Order;
 use crate::simpler::SimplerFriction;
@@ -23,26 +23,26 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
-        let rubs = self.contacts.iter().any(|contact| contact.law().is_some());
+        let has_friction = self.contacts.iter().any(|contact| contact.law().is_some());
         let ways = [SimplerFriction::Stated, SimplerFriction::Sticks];
-        ways[..if rubs { 2 } else { 1 }].iter().find_map(|friction| {
+        ways[..if has_friction { 2 } else { 1 }].iter().find_map(|friction| {
             self.contacts.iter_mut().for_each(|contact| contact.simplify(*friction));
             let found = self.inner(start, time, solved, report).ok();
-            self.contacts.iter_mut().for_each(|contact| contact.restate());
+            self.contacts.iter_mut().for_each(|contact| contact.restore_law());
             found.map(|found| found.state)
         })
     }
 
     /// Multipliers that bear what is out of balance without them.
-    pub(crate) fn guess(&self, state: &SystemState, time: f64) -> Result<Vec<f64>, IncrementError> {
+    pub(crate) fn initial_multipliers(&self, state: &SystemState, time: f64) -> Result<Vec<f64>, IncrementError> {
         let residual = self.assemble(state, time, Order::First)?.residual;
         let (first, _) = self.numbering();
         let at = self.bodies_in(state, &first);
         let lands = self.lands(at);
         let list = self.contacts.iter().map(AsRef::as_ref);
         let of = |(contact, lands): (&dyn Interaction, &bool)| match lands {
-            true => contact.guess(at, &residual),
-            false => contact.remembered(),
+            true => contact.initial_multipliers(at, &residual),
+            false => contact.previous_multipliers(),
         };
         Ok(list.zip(&lands).flat_map(of).collect())
     }
@@ -76,7 +76,7 @@ impl System {
         let known = ROUNDING * self.size();
         let own = self.own(state);
         let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };
-        let around = Around { known, before };
+        let around = OuterIteration { known, before };
         let mut change = 0.0f64;
         for ((contact, own), sites) in self.contacts.iter_mut().zip(own).zip(&result.sites) {
             change = change.max(contact.augment(at, own, sites, around).map_err(AssemblyError::from)?);

@@ -5,7 +5,8 @@
 //! there are unknowns (a quaternion turns by three): a step of the unknowns reaches it through [`Body::advance`].
 
 pub use crate::points::{
-    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site,
+    Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, Order, RigidFoot, Sampling,
+    SecondDerivative, Site, SlavePoint,
 };
 
 use crate::curve::Curve;
@@ -76,22 +77,22 @@ impl Hold<'_> {
     }
 }
 
-/// An equation between unknowns: the step of the unknowns times `terms`, plus `lack`, is zero.
+/// An equation between unknowns: the step of the unknowns times `terms`, plus `violation`, is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Constraint {
     pub terms: Vec<(u32, f64)>,
     /// How far what is held is from where it should be.
-    pub lack: f64,
+    pub violation: f64,
     /// Force and moment of the support on the body per unit of its multiplier.
     pub reaction: [Vector<3>; 2],
 }
 
 impl Constraint {
     /// Prescribes a component of displacements (0..3) or rotations (3..6), whose reaction is a force or moment along it.
-    pub fn of_component(terms: Vec<(u32, f64)>, lack: f64, component: usize) -> Self {
+    pub fn of_component(terms: Vec<(u32, f64)>, violation: f64, component: usize) -> Self {
         let mut reaction = [Vector::<3>::zeros(); 2];
         reaction[component / 3][component % 3] = 1.0;
-        Constraint { terms, lack, reaction }
+        Constraint { terms, violation, reaction }
     }
 
     /// Whether it prescribes a rotation.
@@ -276,7 +277,7 @@ pub trait Body: Send + Sync {
     }
 
     /// A site where it is now.
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed;
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint;
 
     /// A place as it may be touched.
     ///
@@ -334,7 +335,7 @@ pub trait Body: Send + Sync {
 
     /// Until the next call what may be slack is also a spring of no length at rest, with this force at the unstrained length of
     /// the body: to find a shape from which it hangs soon.
-    fn tighten(&mut self, _force: f64) {}
+    fn add_sag_spring(&mut self, _force: f64) {}
 
     /// Until the next call what may be slack is as stiff as a part of its stiffness: to find a shape near the one that it has
     /// when it hardly stretches. The stiffness itself, as a force; 0 of what is never slack.

@@ -6,11 +6,11 @@
 //! factor of two.
 
 use crate::equilibrium::Problem;
-use crate::increment::{IncrementResult, Way};
+use crate::increment::{IncrementResult, Strategy};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::points::Order;
-use crate::stability::{NEUTRAL, Stability, Tested, Unstable, UnstableMode};
+use crate::stability::{NEUTRAL, Stability, StabilityTest, Unstable, UnstableMode};
 use crate::system::{System, SystemState};
 use signorini_solve::newton::Converged;
 
@@ -62,9 +62,9 @@ impl System {
         let mut neutral = NEUTRAL;
         loop {
             let mode = match self.test_stability(&state, time, neutral)? {
-                Tested::Unknown if told.followed == 0 => return Ok((state, result)),
-                Tested::Unknown | Tested::Stable => break,
-                Tested::Unstable(mode) => mode,
+                StabilityTest::Unknown if told.followed == 0 => return Ok((state, result)),
+                StabilityTest::Unknown | StabilityTest::Stable => break,
+                StabilityTest::Unstable(mode) => mode,
             };
             if mode.value > -HARDLY_ANY && self.is_neutral(&mode, (&state, result.energy), time, report)? {
                 neutral = -mode.value;
@@ -89,7 +89,7 @@ impl System {
             let mut solved = result.solved;
             let mut next = None;
             for sign in [1.0, -1.0] {
-                match self.by(Way::Along(&mode, sign), &state, time, &mut solved, report) {
+                match self.by(Strategy::Along(&mode, sign), &state, time, &mut solved, report) {
                     Ok(found) => next = Some(found.state),
                     Err(IncrementError::Interrupted) => return Err(IncrementError::Interrupted),
                     Err(_) => continue,
@@ -123,7 +123,7 @@ impl System {
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<bool, IncrementError> {
-        let Ok(found) = self.by(Way::Beside(mode), state, time, &mut Solved::default(), report) else {
+        let Ok(found) = self.by(Strategy::Beside(mode), state, time, &mut Solved::default(), report) else {
             return Ok(false);
         };
         let there = self.assemble(&found.state, time, Order::First)?.energy;
@@ -183,7 +183,7 @@ impl System {
                     start = SystemState { time: at, predictions: start.predictions, ..beyond.clone() };
                     system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(at, state));
                 }
-                let found = system.by(Way::Straight, &start, at, &mut solved, report)?;
+                let found = system.by(Strategy::Straight, &start, at, &mut solved, report)?;
                 if system.contacts.is_empty() { Ok(found.state) } else { Ok(system.outer(&found.state, at, report)?.0) }
             });
             let value = found.and_then(|state| {

@@ -24,7 +24,7 @@
 mod assembly;
 mod interaction;
 mod partners;
-mod passed;
+mod redistribution;
 mod state;
 mod traction;
 
@@ -34,8 +34,8 @@ pub use partners::Pairing;
 use crate::body::{Body, BodyState, PlaceError};
 use crate::enforcement::Enforcement;
 use crate::nitsche::Stress;
-use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
-use crate::points::{Anchor, Master, Met, Order, Placed, Sampling, Site};
+use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
+use crate::points::{Anchor, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
 use crate::simpler::SetAside;
 use partners::Partners;
 use signorini_contact::Law;
@@ -90,7 +90,7 @@ pub(crate) struct Sides<'a> {
 }
 
 /// A pair, with the stress of the slave where that enforces the contact.
-struct Touch {
+struct MeasuredPair {
     pair: Pair,
     stress: Option<Stress>,
 }
@@ -181,8 +181,8 @@ impl Contact {
         k: usize,
         sides: &Sides<'_>,
         (master, farthest): (&dyn Master, f64),
-        wanted: impl Fn(&Touch) -> bool,
-    ) -> (Placed, Option<Result<Touch, NoPair>>) {
+        wanted: impl Fn(&MeasuredPair) -> bool,
+    ) -> (SlavePoint, Option<Result<MeasuredPair, NoPair>>) {
         let Some(known) = self.partners.get() else { return self.pair_now(k, sides, (master, farthest), wanted) };
         let placed = sides.slave.0.placed(sides.slave.1, &self.sites[k]);
         let Some(partner) = known[k].filter(|_| !placed.rests) else { return (placed, None) };
@@ -205,8 +205,8 @@ impl Contact {
         k: usize,
         sides: &Sides<'_>,
         (master, farthest): (&dyn Master, f64),
-        wanted: impl Fn(&Touch) -> bool,
-    ) -> (Placed, Option<Result<Touch, NoPair>>) {
+        wanted: impl Fn(&MeasuredPair) -> bool,
+    ) -> (SlavePoint, Option<Result<MeasuredPair, NoPair>>) {
         let site = &self.sites[k];
         let placed = sides.slave.0.placed(sides.slave.1, site);
         if placed.rests {
@@ -220,7 +220,7 @@ impl Contact {
         {
             return (placed, None);
         }
-        let met: Option<Met> = match &placed.averaged {
+        let met: Option<MasterProjection> = match &placed.averaged {
             Some(normal) if master.is_faceted() && except.is_none() => {
                 master.cut(&placed.x, &normal.vector, self.reach)
             }
@@ -236,7 +236,7 @@ impl Contact {
         let friction = self.friction.is_some() && self.pairing == Pairing::Now;
         let stuck = self.memory[k].stuck.filter(|_| friction);
         let anchor: Option<(Stuck, Anchor)> = stuck.map(|s| (s, master.at(&s.point)));
-        let encounter = Encounter {
+        let encounter = PairGeometry {
             slave: &placed,
             met: &met,
             first: sides.first,
@@ -265,10 +265,10 @@ impl Contact {
         (trial / self.stiffness[k]).max(0.0)
     }
 
-    fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> Touch {
+    fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> MeasuredPair {
         let (body, state) = sides.slave;
         let stress = self.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten();
         let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
-        Touch { pair, stress }
+        MeasuredPair { pair, stress }
     }
 }

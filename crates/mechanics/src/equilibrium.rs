@@ -145,7 +145,7 @@ impl Problem<'_> {
         let lacks = out.single.iter().chain(&out.coupled).map(|h| {
             // The unknowns give way together: springs in a row.
             let gives_way = |(unknown, factor): &(u32, f64)| factor * factor / self.scales[*unknown as usize];
-            h.constraint.lack.powi(2) / h.constraint.terms.iter().map(gives_way).sum::<f64>()
+            h.constraint.violation.powi(2) / h.constraint.terms.iter().map(gives_way).sum::<f64>()
         });
         free.chain(rows).chain(lacks).sum::<f64>().sqrt()
     }
@@ -167,9 +167,9 @@ impl Problem<'_> {
             out.residual.iter_mut().zip(forces).for_each(|(r, f)| *r -= share * f);
             let count = out.residual.len() - out.coupled.len();
             let list = out.single.iter_mut().chain(&mut out.coupled);
-            list.zip(lacks).for_each(|(held, lack)| held.constraint.lack -= share * lack);
+            list.zip(lacks).for_each(|(held, violation)| held.constraint.violation -= share * violation);
             for (k, held) in out.coupled.iter().enumerate() {
-                out.residual[count + k] = held.constraint.lack;
+                out.residual[count + k] = held.constraint.violation;
             }
         }
         Ok(out)
@@ -262,7 +262,7 @@ impl Equations for Problem<'_> {
             take(force / (TOLERANCE * scale[0]).max(rounding[0]), count + k);
         }
         for held in out.single.iter().chain(&out.coupled) {
-            take(held.constraint.lack.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);
+            take(held.constraint.violation.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);
         }
         self.worst = worst.1;
         let merit = self.merit(&out, &held);
@@ -280,7 +280,7 @@ impl Equations for Problem<'_> {
         for h in &out.single {
             let (unknown, factor) = h.constraint.terms[0];
             held[unknown as usize] = true;
-            right[unknown as usize] = -h.constraint.lack / factor;
+            right[unknown as usize] = -h.constraint.violation / factor;
         }
         if self.stiffness == Stiffness::KeptByBodies {
             let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;
@@ -347,7 +347,7 @@ impl Equations for Problem<'_> {
             return false;
         }
         let size = self.system.size();
-        let lacks = |h: &crate::system::Held| h.constraint.lack.abs() > ROUNDING * size;
+        let lacks = |h: &crate::system::Held| h.constraint.violation.abs() > ROUNDING * size;
         self.system.held(&at.bodies, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
 

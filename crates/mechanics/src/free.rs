@@ -56,7 +56,7 @@ impl System {
     }
 
     /// Whether there is friction.
-    pub(crate) fn rubs(&self) -> bool {
+    pub(crate) fn has_friction(&self) -> bool {
         self.contacts.iter().any(|contact| contact.law().is_some())
     }
 
@@ -180,14 +180,15 @@ impl Problem<'_> {
     /// it rests.
     pub(crate) fn slides(&self, from: &SystemState, to: &SystemState) -> bool {
         let far = SLIDES * self.system.size();
-        self.system.rubs() && self.goes_by_itself(from, to) > far && self.system.has_unheld_body()
+        self.system.has_friction() && self.goes_by_itself(from, to) > far && self.system.has_unheld_body()
     }
 
     /// How far something moved between two states, if no support moves about as far.
     fn goes_by_itself(&self, from: &SystemState, to: &SystemState) -> f64 {
         let moved = to.travel.iter().zip(&from.travel).zip(&self.is_spin).filter(|(_, turns)| !**turns);
         let farthest = moved.map(|((b, a), _)| (b - a).abs()).fold(0.0, f64::max);
-        let reach = |h: &Held| h.constraint.lack.abs() * if h.constraint.turns() { self.system.size() } else { 1.0 };
+        let reach =
+            |h: &Held| h.constraint.violation.abs() * if h.constraint.turns() { self.system.size() } else { 1.0 };
         let driven = self
             .system
             .held(&from.bodies, self.time)
@@ -198,9 +199,10 @@ impl Problem<'_> {
     /// Whether a support pulls a rigid body.
     pub(crate) fn is_pulled(&self, at: &SystemState) -> bool {
         let lacks = |h: &crate::system::Held| {
-            let (body, lack) = (self.system.supports[h.support].part.body, h.constraint.lack.abs());
+            let (body, violation) = (self.system.supports[h.support].part.body, h.constraint.violation.abs());
             let size = self.system.bodies[body].size();
-            self.system.bodies[body].is_rigid() && lack > 0.5 * LEAP * if h.constraint.turns() { 1.0 } else { size }
+            self.system.bodies[body].is_rigid()
+                && violation > 0.5 * LEAP * if h.constraint.turns() { 1.0 } else { size }
         };
         self.system.held(&at.bodies, self.time).is_ok_and(|(single, coupled)| single.iter().chain(&coupled).any(lacks))
     }
@@ -217,8 +219,11 @@ impl Problem<'_> {
         let own = first[k] as usize..first[k] as usize + body.unknowns();
         let (travel, is_spin) = (&at.travel[own.clone()], &self.is_spin[own]);
         let motion = motion_in_words((body.as_ref(), &at.bodies[k]), (travel, is_spin), self.is_spin[unknown]);
-        let motion =
-            if self.system.rubs() && self.touches(k, at) { motion.replacen("moving", "sliding", 1) } else { motion };
+        let motion = if self.system.has_friction() && self.touches(k, at) {
+            motion.replacen("moving", "sliding", 1)
+        } else {
+            motion
+        };
         IncrementError::Free { body: body.name().to_string(), motion }
     }
 

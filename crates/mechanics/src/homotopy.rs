@@ -27,14 +27,14 @@ const LEAST_BIT: f64 = 1e-4;
 impl Problem<'_> {
     /// Solves with the forces that are out of balance at the start, and what supports prescribe beyond it, held back and
     /// let go bit by bit.
-    pub(crate) fn bit_by_bit(
+    pub(crate) fn load_homotopy(
         &mut self,
         start: &SystemState,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let at = self.system.assemble(start, self.time, Order::First)?;
         let count = self.is_spin.len();
-        let lacks: Vec<f64> = at.single.iter().chain(&at.coupled).map(|h| h.constraint.lack).collect();
+        let lacks: Vec<f64> = at.single.iter().chain(&at.coupled).map(|h| h.constraint.violation).collect();
         let (mut reached, mut size) = (0.0, FIRST_BIT);
         let mut state = start.clone();
         let held_back = (at.residual[..count].to_vec(), lacks);

@@ -50,7 +50,7 @@ const AUGMENTED: f64 = 1e-9;
 const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
-pub(crate) enum Way<'a> {
+pub(crate) enum Strategy<'a> {
     /// From the last state.
     Straight,
     /// From the last state, down a convex energy.
@@ -80,8 +80,8 @@ impl System {
     /// Places that are not there.
     pub fn sites(&self, contact: usize, state: &SystemState) -> Result<Vec<SiteResult>, IncrementError> {
         let found = self.sites_at_limit(contact, state)?;
-        let rubs = self.contacts[contact].law().is_some();
-        Ok(if rubs { with_rest(found, self.size()) } else { found })
+        let has_friction = self.contacts[contact].law().is_some();
+        Ok(if has_friction { with_rest(found, self.size()) } else { found })
     }
 
     /// The surface of a contact as it is drawn in a state, between the sites of [`System::sites`]; none of what has no faces.
@@ -150,7 +150,7 @@ impl System {
         if let Some((k, share)) = self.first_passage(from, &start)? {
             return Err(IncrementError::PassesThrough { contact: self.contacts[k].name().to_string(), share });
         }
-        start.multipliers = self.contacts.iter().flat_map(|c| c.remembered()).collect();
+        start.multipliers = self.contacts.iter().flat_map(|c| c.previous_multipliers()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
         self.contacts.iter_mut().for_each(|c| c.begin(time));
         Ok(start)
@@ -197,7 +197,7 @@ impl System {
             // Without a guess which sites carry, multipliers start from what penalties find.
             let exact = self.contacts.iter().any(|c| c.is_exact());
             if exact && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
-                state.multipliers = self.guess(&state, time)?;
+                state.multipliers = self.initial_multipliers(&state, time)?;
             }
             let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
@@ -247,13 +247,13 @@ impl System {
                 found => return found,
             }
         }
-        let failed = match self.by(Way::Straight, start, time, solved, report) {
+        let failed = match self.by(Strategy::Straight, start, time, solved, report) {
             Err(error) if is_curable(&error) => error,
             found => return found,
         };
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
-        let found = self.with_softer_trials(|system, is_softer| {
-            is_softer.then(|| system.by(Way::Straight, start, time, solved, report))
+        let found = self.with_scaled_trials(|system, is_softer| {
+            is_softer.then(|| system.by(Strategy::Straight, start, time, solved, report))
         });
         match found {
             None => {}
@@ -263,18 +263,18 @@ impl System {
         // No other way leads where there is nothing to find.
         let (first, _) = self.numbering();
         let at = self.bodies_in(start, &first);
-        if let Some(reason) = self.contacts.iter().find_map(|contact| contact.doubt(at)) {
+        if let Some(reason) = self.contacts.iter().find_map(|contact| contact.ill_conditioning(at)) {
             let history = match failed {
                 IncrementError::NotConverged { history, .. } => history,
                 _ => vec![0.0],
             };
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
-        self.by(Way::Round(failed), start, time, solved, report)
+        self.by(Strategy::Round(failed), start, time, solved, report)
     }
 
     /// What is done while the trials of contacts that can be softer are; told whether there are any.
-    pub(crate) fn with_softer_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
+    pub(crate) fn with_scaled_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
         let softer: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.scale_trials(SOFTER)).collect();
         let found = of(self, softer.contains(&true));
         self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
@@ -284,7 +284,7 @@ impl System {
     /// Newton's method by one way.
     pub(crate) fn by(
         &self,
-        way: Way<'_>,
+        way: Strategy<'_>,
         start: &SystemState,
         time: f64,
         solved: &mut Solved,
@@ -303,7 +303,7 @@ impl System {
             is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),
-            goes_down: matches!(way, Way::Down),
+            goes_down: matches!(way, Strategy::Down),
             held_back: None,
             is_spin: self.is_spin(),
             rows,
@@ -314,7 +314,7 @@ impl System {
             worst: 0,
         };
         let found = match way {
-            Way::Straight => match problem.solve(start, report) {
+            Strategy::Straight => match problem.solve(start, report) {
                 // Newton's method may find a body far away, where it touches nothing, or on the other side of another, or one that
                 // slid though friction holds it.
                 Ok(found)
@@ -327,16 +327,16 @@ impl System {
                 }
                 found => found,
             },
-            Way::Down => problem.solve(start, report),
-            Way::Round(error) => self.by_another_way(&mut problem, start, error, report),
-            Way::Beside(mode) => problem.beside(mode, start, report),
-            Way::Along(mode, sign) => problem.along(mode, sign, start, report),
+            Strategy::Down => problem.solve(start, report),
+            Strategy::Round(error) => self.by_another_strategy(&mut problem, start, error, report),
+            Strategy::Beside(mode) => problem.beside(mode, start, report),
+            Strategy::Along(mode, sign) => problem.along(mode, sign, start, report),
         };
         *solved = problem.solved;
         found
     }
 
-    fn by_another_way(
+    fn by_another_strategy(
         &self,
         problem: &mut Problem<'_>,
         start: &SystemState,
@@ -344,8 +344,8 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // A free body needs springs until it touches; what is held may take what is out of balance bit by bit.
-        if !(problem.is_free || self.rubs() && self.has_unheld_body()) {
-            match problem.bit_by_bit(start, report) {
+        if !(problem.is_free || self.has_friction() && self.has_unheld_body()) {
+            match problem.load_homotopy(start, report) {
                 Err(failed) if is_curable(&failed) => {}
                 found => return found,
             }

@@ -1,6 +1,6 @@
 //! Sites that lie inside of a rigid body, where no contact sees them: they face away from the side that is nearest to them.
 
-use crate::points::{Master, Placed};
+use crate::points::{Master, SlavePoint};
 use signorini_geometry::Point;
 
 /// A site inside of a rigid body.
@@ -19,7 +19,7 @@ const EXPLAINED: f64 = 0.5;
 const INTERFERENCE: f64 = 0.25;
 
 /// The deepest of the sites of a surface that are inside and face away: deeper than chords, and than what carries.
-pub(crate) fn unseen(master: &dyn Master, sites: &[Placed]) -> Option<Inside> {
+pub(crate) fn unseen(master: &dyn Master, sites: &[SlavePoint]) -> Option<Inside> {
     let found = depths(master, sites);
     let least = EXPLAINED * distance(sites);
     let carried = found.iter().filter(|(_, away)| !away).map(|(inside, _)| inside.depth).fold(0.0, f64::max);
@@ -28,7 +28,7 @@ pub(crate) fn unseen(master: &dyn Master, sites: &[Placed]) -> Option<Inside> {
 }
 
 /// The deepest of the sites of a surface of a body of a given size, if nothing sees it or if that is no interference any more.
-pub(crate) fn at_start(master: &dyn Master, sites: &[Placed], size: f64) -> Option<Inside> {
+pub(crate) fn at_start(master: &dyn Master, sites: &[SlavePoint], size: f64) -> Option<Inside> {
     let all = deepest(depths(master, sites).into_iter().map(|(inside, _)| inside));
     unseen(master, sites).or(all.filter(|found| found.depth > INTERFERENCE * size))
 }
@@ -38,8 +38,8 @@ fn deepest(list: impl Iterator<Item = Inside>) -> Option<Inside> {
 }
 
 /// The sites inside, and whether they face away.
-fn depths(master: &dyn Master, sites: &[Placed]) -> Vec<(Inside, bool)> {
-    let of = |placed: &Placed| {
+fn depths(master: &dyn Master, sites: &[SlavePoint]) -> Vec<(Inside, bool)> {
+    let of = |placed: &SlavePoint| {
         let outward = placed.outward.filter(|_| !placed.rests)?;
         let (gap, normal) = master.nearest(&placed.x, f64::INFINITY, None)?.gap(&placed.x)?;
         let away = outward.dot(&normal) > AWAY * outward.norm();
@@ -49,7 +49,7 @@ fn depths(master: &dyn Master, sites: &[Placed]) -> Vec<(Inside, bool)> {
 }
 
 /// How far sites are apart, about.
-fn distance(sites: &[Placed]) -> f64 {
+fn distance(sites: &[SlavePoint]) -> f64 {
     let Some(first) = sites.first() else { return 0.0 };
     let (low, high) = sites.iter().fold((first.x, first.x), |(l, h), s| (l.inf(&s.x), h.sup(&s.x)));
     let in_space = sites.iter().any(|s| s.functions.iter().any(|f| f.value.z != 0.0));

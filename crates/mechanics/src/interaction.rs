@@ -13,7 +13,7 @@ use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
 use crate::inside::{self, Inside};
 use crate::part::Part;
-use crate::points::Placed;
+use crate::points::SlavePoint;
 use crate::shown_surface::ShownSurface;
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
@@ -31,12 +31,12 @@ pub struct Bodies<'a> {
 
 /// A way between two states of all bodies, on which positions and turns change in proportion.
 #[derive(Clone, Copy)]
-pub struct Way<'a> {
+pub struct StatePath<'a> {
     pub from: Bodies<'a>,
     pub to: Bodies<'a>,
 }
 
-impl Way<'_> {
+impl StatePath<'_> {
     /// A body on the way: `t` from 0 to 1.
     pub fn at(&self, body: usize, t: f64) -> BodyState {
         let [from, to] = [self.from, self.to].map(|b| &b.states[body]);
@@ -50,7 +50,7 @@ impl Way<'_> {
 
 /// The numbers of an interaction in a state of the system.
 #[derive(Clone, Copy)]
-pub struct Own<'a> {
+pub struct InteractionUnknowns<'a> {
     pub multipliers: &'a [f64],
     /// Unknown of the system that the first multiplier is.
     pub first: u32,
@@ -58,7 +58,7 @@ pub struct Own<'a> {
 }
 
 /// Where residual and tangent go, in the numbers of the system.
-pub struct Target<'a> {
+pub struct Assembler<'a> {
     pub residual: &'a mut [f64],
     /// Sum of the sizes of all terms of each equation: the scale of its residual.
     pub sizes: &'a mut [f64],
@@ -68,7 +68,7 @@ pub struct Target<'a> {
 
 /// What an outer iteration knows.
 #[derive(Clone, Copy, Debug)]
-pub struct Around {
+pub struct OuterIteration {
     /// Rounding of positions.
     pub known: f64,
     /// The change of the iteration before, if there was one.
@@ -117,7 +117,7 @@ pub trait Interaction: Send + Sync {
     }
 
     /// Values of its unknowns with which an increment starts: those of the last state.
-    fn remembered(&self) -> Vec<f64> {
+    fn previous_multipliers(&self) -> Vec<f64> {
         Vec::new()
     }
 
@@ -127,12 +127,12 @@ pub trait Interaction: Send + Sync {
     }
 
     /// Values of its unknowns that would bear forces that are out of balance without them; none where that is no good guess.
-    fn guess(&self, _at: Bodies<'_>, _residual: &[f64]) -> Vec<f64> {
-        self.remembered()
+    fn initial_multipliers(&self, _at: Bodies<'_>, _residual: &[f64]) -> Vec<f64> {
+        self.previous_multipliers()
     }
 
     /// Why a state may have none near it, in words with the place.
-    fn doubt(&self, _at: Bodies<'_>) -> Option<String> {
+    fn ill_conditioning(&self, _at: Bodies<'_>) -> Option<String> {
         None
     }
 
@@ -164,20 +164,25 @@ pub trait Interaction: Send + Sync {
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError>;
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError>;
 
     /// The points that are tested as they are found in a state.
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError>;
+    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError>;
 
     /// The surface of the first body as it is drawn in a state, between the points of [`Interaction::results`]; none of what
     /// has no faces.
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn surface(&self, _at: Bodies<'_>, _own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+    fn surface(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         Ok(None)
     }
 
@@ -187,7 +192,7 @@ pub trait Interaction: Send + Sync {
     }
 
     /// What a share of a step of all unknowns of the system predicts, from the state before it.
-    fn predict(&self, _at: Bodies<'_>, _own: Own<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
+    fn predict(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
         Vec::new()
     }
 
@@ -196,7 +201,7 @@ pub trait Interaction: Send + Sync {
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn free_way(&self, _way: Way<'_>) -> Result<f64, PlaceError> {
+    fn free_way(&self, _way: StatePath<'_>) -> Result<f64, PlaceError> {
         Ok(1.0)
     }
 
@@ -213,7 +218,7 @@ pub trait Interaction: Send + Sync {
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError>;
+    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError>;
 
     /// Forgets what it carried, not where slips count from.
     fn unload(&mut self);
@@ -226,16 +231,16 @@ pub trait Interaction: Send + Sync {
     fn augment(
         &mut self,
         at: Bodies<'_>,
-        own: Own<'_>,
+        own: InteractionUnknowns<'_>,
         found: &[SiteResult],
-        around: Around,
+        around: OuterIteration,
     ) -> Result<f64, PlaceError>;
 
-    /// Until [`Interaction::restate`]: penalties in place of multipliers, with a simpler friction where that is asked for.
+    /// Until [`Interaction::restore_law`]: penalties in place of multipliers, with a simpler friction where that is asked for.
     fn simplify(&mut self, friction: SimplerFriction);
 
     /// Ends what [`Interaction::simplify`] began.
-    fn restate(&mut self);
+    fn restore_law(&mut self);
 
     /// History and scales as plain numbers.
     fn history(&self) -> [Vec<f64>; 2];
@@ -258,7 +263,7 @@ const HARDEST: f64 = 1e-6;
 pub(crate) fn take_over<'a>(
     kept: impl Iterator<Item = (&'a mut [f64; 3], &'a f64)>,
     found: &[[f64; 3]],
-    (around, softness): (&Around, f64),
+    (around, softness): (&OuterIteration, f64),
 ) -> f64 {
     let most = found.iter().map(|f| f[0]).fold(0.0f64, f64::max);
     let mut change = 0.0f64;
@@ -273,7 +278,7 @@ pub(crate) fn take_over<'a>(
 
 /// The compliance to go on with: where a step leaves more than a quarter of the error, the next ones are to leave less
 /// (Bertsekas 1982). What enforces has tractions as unknowns, so that Newton's method suffers no harm.
-pub(crate) fn hardened(softness: f64, change: f64, around: &Around) -> f64 {
+pub(crate) fn hardened(softness: f64, change: f64, around: &OuterIteration) -> f64 {
     if around.before.is_some_and(|before| change > SLOW * before) { (HARDER * softness).max(HARDEST) } else { softness }
 }
 
@@ -292,7 +297,7 @@ impl<'a> Bodies<'a> {
     pub(crate) fn inside(
         &self,
         [slave, master]: [&Part; 2],
-        sites: &[Placed],
+        sites: &[SlavePoint],
         is_start: bool,
     ) -> Result<Option<Inside>, PlaceError> {
         let (body, state) = self.side(master);

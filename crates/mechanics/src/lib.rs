@@ -67,14 +67,14 @@ pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
 pub use inside::Inside;
-pub use interaction::{Bodies, Interaction, Own, Target};
+pub use interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
 pub use pair::AxisChoice;
 pub use part::Part;
 pub use points::{
-    Anchor, Bend, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Order, Placed, RigidFoot,
-    Sampling, Site, Turning,
+    Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, NormalField, Order, RigidFoot,
+    Sampling, SecondDerivative, Site, SlavePoint, Turning,
 };
 pub use rigid_body::{Motion, RigidBody, RigidSite};
 pub use saved::Saved;

@@ -57,7 +57,7 @@ pub struct Mortar {
     /// Face and point of each node.
     places: Vec<(usize, Local)>,
     /// Nodes without a pressure of their own: they share that of a neighbour.
-    folded: Vec<bool>,
+    merged: Vec<bool>,
     /// Integral of the dual function of each node over all of the slave side.
     whole: Vec<f64>,
     /// The area by which the equations of each node are weighted: that integral, or the mean of all where it has none.
@@ -133,9 +133,9 @@ impl Mortar {
         }
         let nodes = Nodes::new(surface.faces().0);
         let places = nodes.places();
-        let folded = vec![false; places.len()];
+        let merged = vec![false; places.len()];
         let facing = Facing::new((&slave.0, slave.1), surface.as_ref(), (&master.0, master.1))?;
-        let whole = nodes.whole(surface.as_ref(), &facing, &folded).weight;
+        let whole = nodes.whole(surface.as_ref(), &facing, &merged).weight;
         let stiffness = places.iter().map(|(face, _)| surface.stiffness(*face)).collect();
         let reach = 0.5 * slave.1.size().min(if master.1.is_rigid() { f64::INFINITY } else { master.1.size() });
         drop(surface);
@@ -150,7 +150,7 @@ impl Mortar {
             memory: vec![NodeMemory::default(); places.len()],
             nodes,
             places,
-            folded,
+            merged,
             weights: weights(&whole),
             whole,
             stiffness,

@@ -25,9 +25,9 @@ mod gap;
 mod measures;
 mod slip;
 
-pub use measures::{Axis, AxisChoice, Encounter, NoPair, Pair, Stuck, any_tangent, axis};
+pub use measures::{Axis, AxisChoice, NoPair, Pair, PairGeometry, Stuck, any_tangent, axis};
 
-use crate::points::{Foot, Function, Met, Order};
+use crate::points::{Foot, Function, MasterProjection, Order};
 use along::AtAlong;
 use cut::AtCut;
 use gap::{AtFoot, AtRigid};
@@ -37,19 +37,19 @@ use signorini_geometry::Vector;
 /// How far a surface must look away from the outward normal of the other to be met, as a cosine: rounding of normals.
 const FACING: f64 = 1e-6;
 
-impl Encounter<'_> {
+impl PairGeometry<'_> {
     /// The measures of the pair.
     ///
     /// # Errors
     /// Why there is no pair.
     pub fn measure(&self, order: Order) -> Result<Pair, NoPair> {
         match self.met {
-            Met::Foot(foot) => match foot.coordinates {
+            MasterProjection::Foot(foot) => match foot.coordinates {
                 0 => self.with_foot::<0>(foot, order),
                 1 => self.with_foot::<1>(foot, order),
                 _ => self.with_foot::<2>(foot, order),
             },
-            Met::Along(foot, field) => {
+            MasterProjection::Along(foot, field) => {
                 let at = AtAlong::new(self, foot, field)?;
                 let mut pair = at.gap(order);
                 if self.friction {
@@ -57,7 +57,7 @@ impl Encounter<'_> {
                 }
                 Ok(pair)
             }
-            Met::Cut(foot) => {
+            MasterProjection::Cut(foot) => {
                 let at = AtCut::new(self, foot)?;
                 let mut pair = at.gap(order);
                 if self.friction {
@@ -65,7 +65,7 @@ impl Encounter<'_> {
                 }
                 Ok(pair)
             }
-            Met::Rigid(foot) => {
+            MasterProjection::Rigid(foot) => {
                 let at = AtRigid::new(self, foot)?;
                 let mut pair = at.gap(order);
                 if self.friction {
@@ -153,7 +153,7 @@ impl Encounter<'_> {
     /// with displacements tells its own.
     fn spin_variation(&self, k: &Column, l: &Column) -> [Vector<3>; 2] {
         let master = match self.met {
-            Met::Foot(foot) => (&foot.spin_bends[..], foot.spin.len()),
+            MasterProjection::Foot(foot) => (&foot.spin_bends[..], foot.spin.len()),
             _ => (&[][..], 0),
         };
         let told = [(&self.slave.spin_bends[..], self.slave.spin.len()), master];

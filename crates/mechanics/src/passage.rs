@@ -9,7 +9,7 @@
 //! found by steps as long as the gap, which can miss nothing (sphere tracing, Hart 1996), and inside by steps as long as
 //! the depth.
 
-pub use crate::interaction::Way;
+pub use crate::interaction::StatePath;
 
 use crate::body::{Body, BodyState};
 use crate::contact::Contact;
@@ -34,10 +34,10 @@ impl System {
         to: &SystemState,
     ) -> Result<Option<(usize, f64)>, AssemblyError> {
         let (first, _) = self.numbering();
-        let way = Way { from: self.bodies_in(from, &first), to: self.bodies_in(to, &first) };
+        let path = StatePath { from: self.bodies_in(from, &first), to: self.bodies_in(to, &first) };
         let mut least = None;
         for (k, contact) in self.contacts.iter().enumerate() {
-            let share = contact.free_way(way)?;
+            let share = contact.free_way(path)?;
             if share < least.map_or(1.0, |(_, s)| s) {
                 least = Some((k, share));
             }
@@ -70,26 +70,26 @@ struct Stages {
 }
 
 /// The masters of the stages that were asked for.
-type Known<'a> = Vec<OnceCell<Option<Box<dyn Master + 'a>>>>;
+type MasterStages<'a> = Vec<OnceCell<Option<Box<dyn Master + 'a>>>>;
 
 /// The most stages beside the first.
 const MOST_STAGES: f64 = 16.0;
 
 impl Stages {
-    fn new(way: Way<'_>, master: usize, longest: f64, spacings: impl Iterator<Item = f64>) -> Self {
-        if way.from.bodies[master].is_rigid() || !way.moves(master) {
+    fn new(path: StatePath<'_>, master: usize, longest: f64, spacings: impl Iterator<Item = f64>) -> Self {
+        if path.from.bodies[master].is_rigid() || !path.moves(master) {
             return Stages { states: Vec::new() };
         }
         let finest = LONGEST_STEP * spacings.fold(f64::INFINITY, f64::min);
         let count = (longest / finest).ceil().clamp(1.0, MOST_STAGES);
-        Stages { states: (0..=count as usize).map(|k| way.at(master, k as f64 / count)).collect() }
+        Stages { states: (0..=count as usize).map(|k| path.at(master, k as f64 / count)).collect() }
     }
 
     /// The master at the stage nearest to a share of the way.
     fn at<'a, 'b>(
         &'a self,
         (body, on): (&'a dyn Body, Option<&'a str>),
-        known: &'b Known<'a>,
+        known: &'b MasterStages<'a>,
         share: f64,
     ) -> Option<&'b (dyn Master + 'a)> {
         let k = (share * (self.states.len() - 1) as f64).round() as usize;
@@ -98,23 +98,23 @@ impl Stages {
 }
 
 /// The share of a way on which no point of a slave passes through its master.
-pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<Tested>, way: Way<'_>) -> f64 {
+pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<TrackedPoint>, path: StatePath<'_>) -> f64 {
     let [slave, master] = [parts[0].body, parts[1].body];
-    let bodies = way.from.bodies;
+    let bodies = path.from.bodies;
     let is_rigid = bodies[master].is_rigid();
-    if slave == master || !(way.moves(slave) || way.moves(master)) {
+    if slave == master || !(path.moves(slave) || path.moves(master)) {
         return 1.0;
     }
     let on = parts[1].group.as_deref();
-    let ends = [0, 1].map(|k| if k == 0 { way.from } else { way.to });
+    let ends = [0, 1].map(|k| if k == 0 { path.from } else { path.to });
     let masters = [ends[0], ends[1]].map(|end| bodies[master].master(on, &end.states[master]));
     let [Ok(first), Ok(last)] = &masters else { return 1.0 };
-    let of_master = longest(bodies[master].as_ref(), way, master);
-    let stages = Stages::new(way, master, of_master, tested.iter().map(|point| point.spacing));
-    let known: Known<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
+    let of_master = longest(bodies[master].as_ref(), path, master);
+    let stages = Stages::new(path, master, of_master, tested.iter().map(|point| point.spacing));
+    let known: MasterStages<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
     let mut share = 1.0f64;
     for point in tested {
-        let Tested { from, to, radius, is_surface, spacing } = point;
+        let TrackedPoint { from, to, radius, is_surface, spacing } = point;
         let length = (to - from).norm() + of_master;
         // Surfaces of two solids see each other only where they face each other.
         if (is_surface && !is_rigid) || !length.is_finite() {
@@ -130,11 +130,11 @@ pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<Tested>, way: Way<'_>)
         }
         let met = |t: f64| -> Option<Meeting> {
             let x = from + (to - from) * t;
-            if !way.moves(master) {
+            if !path.moves(master) {
                 return meeting(first.as_ref(), &x, radius);
             }
             if is_rigid {
-                let state = way.at(master, t);
+                let state = path.at(master, t);
                 return meeting(bodies[master].master(on, &state).ok()?.as_ref(), &x, radius);
             }
             meeting(stages.at((bodies[master].as_ref(), on), &known, t)?, &x, radius)
@@ -146,30 +146,30 @@ pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<Tested>, way: Way<'_>)
 
 impl Contact {
     /// The share of a way on which no site passes through the master.
-    pub(crate) fn share_of_way(&self, way: Way<'_>) -> f64 {
-        if !(way.moves(self.slave.body) || way.moves(self.master.body)) {
+    pub(crate) fn share_of_way(&self, path: StatePath<'_>) -> f64 {
+        if !(path.moves(self.slave.body) || path.moves(self.master.body)) {
             return 1.0;
         }
-        share_of_way([&self.slave, &self.master], self.tested(way), way)
+        share_of_way([&self.slave, &self.master], self.tested(path), path)
     }
 
     /// The points of the slave that are followed: its sites, and on a curve that is stretched on the way as many between
     /// them that they are no farther apart than the sites were.
-    fn tested(&self, way: Way<'_>) -> Vec<Tested> {
+    fn tested(&self, path: StatePath<'_>) -> Vec<TrackedPoint> {
         let slave = self.slave.body;
-        let body = &way.from.bodies[slave];
+        let body = &path.from.bodies[slave];
         let is_curve = body.curve(self.slave.group.as_deref()).is_some();
         let count = self.sites().len() as f64;
-        let mut out: Vec<Tested> = Vec::new();
+        let mut out: Vec<TrackedPoint> = Vec::new();
         for site in self.sites() {
-            let [a, b] = [way.from, way.to].map(|end| body.placed(&end.states[slave], site));
+            let [a, b] = [path.from, path.to].map(|end| body.placed(&end.states[slave], site));
             if a.rests || b.rests {
                 continue;
             }
             let is_surface = a.outward.is_some();
             // What is smaller than the distance of sites is not seen at rest either.
             let spacing = body.size() / if is_surface { count.sqrt() } else { count };
-            let point = Tested { from: a.x, to: b.x, radius: a.radius, is_surface, spacing };
+            let point = TrackedPoint { from: a.x, to: b.x, radius: a.radius, is_surface, spacing };
             if let (Some(before), true) = (out.last().copied(), is_curve) {
                 let [apart, then] = [point.from - before.from, point.to - before.to].map(|d| d.norm());
                 let more = (then / apart.max(spacing)).min(MOST_BETWEEN);
@@ -177,7 +177,7 @@ impl Contact {
                 out.extend((1..more).map(|k| {
                     let s = k as f64 / more as f64;
                     let between = |p: Point<3>, q: Point<3>| p + (q - p) * s;
-                    Tested { from: between(before.from, point.from), to: between(before.to, point.to), ..point }
+                    TrackedPoint { from: between(before.from, point.from), to: between(before.to, point.to), ..point }
                 }));
             }
             out.push(point);
@@ -188,7 +188,7 @@ impl Contact {
 
 /// A point that is followed.
 #[derive(Clone, Copy)]
-pub(crate) struct Tested {
+pub(crate) struct TrackedPoint {
     pub from: Point<3>,
     pub to: Point<3>,
     pub radius: f64,
@@ -202,8 +202,8 @@ pub(crate) struct Tested {
 const MOST_BETWEEN: f64 = 100.0;
 
 /// No point of a body goes farther than this on a way.
-fn longest(body: &dyn Body, way: Way<'_>, number: usize) -> f64 {
-    let [from, to] = [way.from, way.to].map(|end| &end.states[number]);
+fn longest(body: &dyn Body, path: StatePath<'_>, number: usize) -> f64 {
+    let [from, to] = [path.from, path.to].map(|end| &end.states[number]);
     if body.is_rigid() {
         let [from, to] = [from, to].map(Pose::of);
         return (to.centre - from.centre).norm() + body.size() * rotation::between(&from.turn, &to.turn).norm();

@@ -27,7 +27,7 @@ pub struct Function {
 
 /// Second derivative of a position in two unknowns; listed once for `i <= j`, and standing for both.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bend {
+pub struct SecondDerivative {
     pub unknowns: [u32; 2],
     pub value: Vector<3>,
 }
@@ -55,7 +55,7 @@ pub struct Direction {
     /// The values are the changes of the vector.
     pub functions: Vec<Function>,
     /// Second derivatives of the vector.
-    pub bends: Vec<Bend>,
+    pub bends: Vec<SecondDerivative>,
 }
 
 /// The averaged normal of a surface of facets at a point of it, of any length: with its slopes along the coordinates, and what
@@ -67,12 +67,12 @@ pub struct NormalField {
     /// The values are the changes of the vector, the slopes those of its slopes.
     pub functions: Vec<Function>,
     /// Second derivatives of the vector.
-    pub bends: Vec<Bend>,
+    pub bends: Vec<SecondDerivative>,
 }
 
 /// A site where it is now.
 #[derive(Clone, Debug, Default)]
-pub struct Placed {
+pub struct SlavePoint {
     pub x: Point<3>,
     /// Outward unit normal of a surface; none for a curve or a point, which faces every way.
     pub outward: Option<Vector<3>>,
@@ -95,7 +95,7 @@ pub struct Placed {
     /// The rotation vector since the start, whole turns included, of a rigid body.
     pub turn: Option<Vector<3>>,
     /// Second derivatives of `x`; empty where it is linear in the unknowns.
-    pub bends: Vec<Bend>,
+    pub bends: Vec<SecondDerivative>,
 }
 
 /// A material point of a body that may be touched: which part of it, and where in it. Of a rigid body the coordinates are
@@ -122,7 +122,7 @@ pub struct Foot {
     pub functions: Vec<Function>,
     /// What turns the section, and how it is turned now.
     pub spin: Vec<Function>,
-    /// Second variations of these spins, as in [`Placed`].
+    /// Second variations of these spins, as in [`SlavePoint`].
     pub spin_bends: Vec<Vector<3>>,
     pub frame: Matrix<3>,
 }
@@ -147,7 +147,7 @@ pub struct RigidFoot {
 
 /// What a point meets.
 #[derive(Clone)]
-pub enum Met {
+pub enum MasterProjection {
     /// The nearest point.
     Foot(Box<Foot>),
     /// The point on the line along the averaged normal of the slave.
@@ -157,12 +157,12 @@ pub enum Met {
     Rigid(Box<RigidFoot>),
 }
 
-impl Met {
+impl MasterProjection {
     /// The gap of a point to what it meets, negative inside, and the normal outward from that; none on a curve itself.
     pub fn gap(&self, x: &Point<3>) -> Option<(f64, Vector<3>)> {
         match self {
-            Met::Rigid(foot) => Some((foot.jet.gap, foot.jet.normal)),
-            Met::Foot(foot) | Met::Cut(foot) | Met::Along(foot, _) => {
+            MasterProjection::Rigid(foot) => Some((foot.jet.gap, foot.jet.normal)),
+            MasterProjection::Foot(foot) | MasterProjection::Cut(foot) | MasterProjection::Along(foot, _) => {
                 let d = x - foot.jet.x;
                 Some(match foot.outward {
                     Some(outward) => (d.norm() * d.dot(&outward).signum(), outward),
@@ -206,10 +206,10 @@ pub trait Master: Sync {
 
     /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
     /// next to that site along the body is left out: contact of a body with itself.
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met>;
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<MasterProjection>;
 
     /// All places that a ball about `x` may touch at once, the nearest first: of rigid bodies that curve around it.
-    fn places(&self, x: &Point<3>) -> Vec<Met> {
+    fn places(&self, x: &Point<3>) -> Vec<MasterProjection> {
         self.nearest(x, f64::INFINITY, None).into_iter().collect()
     }
 
@@ -225,12 +225,12 @@ pub trait Master: Sync {
 
     /// The point on the line through `x` along a direction of any length, on a side that faces it, at most `reach` ahead or
     /// behind.
-    fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<Met> {
+    fn cut(&self, _x: &Point<3>, _direction: &Vector<3>, _reach: f64) -> Option<MasterProjection> {
         None
     }
 
     /// The point from which `x` lies along the averaged normal of a surface of facets, where its faces go on smoothly.
-    fn along(&self, _x: &Point<3>, _reach: f64) -> Option<Met> {
+    fn along(&self, _x: &Point<3>, _reach: f64) -> Option<MasterProjection> {
         None
     }
 

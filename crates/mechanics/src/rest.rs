@@ -15,7 +15,7 @@ impl System {
         let found = self.assemble(at, time, Order::First)?;
         let stiffness = self.contacts.iter().map(|contact| contact.stiffness(&self.bodies));
         let rounding = ROUNDING * self.size() * stiffness.filter(|c| c.is_finite()).fold(0.0, f64::max);
-        let is_still = found.single.iter().chain(&found.coupled).all(|held| held.constraint.lack == 0.0);
+        let is_still = found.single.iter().chain(&found.coupled).all(|held| held.constraint.violation == 0.0);
         Ok(is_still && found.residual.iter().all(|r| r.abs() <= rounding))
     }
 }

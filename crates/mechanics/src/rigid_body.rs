@@ -7,7 +7,8 @@
 use crate::body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::pair::{any_tangent, axis};
 use crate::points::{
-    Anchor, Bend, Function, Master, MaterialPoint, Met, Order, Placed, RigidFoot, Sampling, Site, Turning,
+    Anchor, Function, Master, MasterProjection, MaterialPoint, Order, RigidFoot, Sampling, SecondDerivative, Site,
+    SlavePoint, Turning,
 };
 use crate::rotation;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
@@ -117,7 +118,7 @@ impl RigidBody {
     }
 
     /// Functions of a point at `arm` from the centre, with its second derivatives.
-    fn functions(&self, arm: &Vector<3>) -> (Vec<Function>, Vec<Function>, Vec<Bend>) {
+    fn functions(&self, arm: &Vector<3>) -> (Vec<Function>, Vec<Function>, Vec<SecondDerivative>) {
         let (mut functions, mut spin, mut bends) = (Vec::new(), Vec::new(), Vec::new());
         for (c, unknown) in self.components() {
             let e = axis(c % 3);
@@ -130,7 +131,7 @@ impl RigidBody {
             for (d, other) in self.components().filter(|(d, _)| *d >= c) {
                 let f = axis(d % 3);
                 let value = (e.cross(&f.cross(arm)) + f.cross(&e.cross(arm))) * 0.5;
-                bends.push(Bend { unknowns: [unknown, other], value });
+                bends.push(SecondDerivative { unknowns: [unknown, other], value });
             }
         }
         (functions, spin, bends)
@@ -206,8 +207,8 @@ impl Body for RigidBody {
         let mut out = Vec::new();
         for i in 0..3 {
             if let (Some(field), Some(unknown)) = (hold.displacement[i], self.unknown(i)) {
-                let lack = pose.centre[i] - self.centre[i] - field(&self.centre);
-                out.push(Constraint::of_component(vec![(unknown, 1.0)], lack, i));
+                let violation = pose.centre[i] - self.centre[i] - field(&self.centre);
+                out.push(Constraint::of_component(vec![(unknown, 1.0)], violation, i));
             }
             if let (Some(field), Some(_)) = (hold.rotation[i], self.unknown(3 + i)) {
                 let terms = (3..6).filter_map(|c| Some((self.unknown(c)?, turn[(i, c - 3)])));
@@ -279,13 +280,13 @@ impl Body for RigidBody {
         Ok(self.sites.iter().enumerate().map(site).collect())
     }
 
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         let own = &self.sites[site.patch as usize];
         let pose = Pose::of(state);
         let frame = pose.matrix();
         let arm = frame * (own.x - self.centre);
         let (functions, spin, bends) = self.functions(&arm);
-        Placed {
+        SlavePoint {
             x: pose.centre + arm,
             outward: own.outward.map(|n| frame * n),
             averaged: None,
@@ -351,9 +352,9 @@ struct RigidMaster<'a> {
 
 impl RigidMaster<'_> {
     /// A place of the shape that the point `own`, in the axes of the body, sees with a gap.
-    fn met(&self, own: &Point<3>, rotation: &Matrix<3>, jet: GapJet<3>) -> Met {
+    fn met(&self, own: &Point<3>, rotation: &Matrix<3>, jet: GapJet<3>) -> MasterProjection {
         let foot = own - jet.normal * jet.gap;
-        Met::Rigid(Box::new(RigidFoot {
+        MasterProjection::Rigid(Box::new(RigidFoot {
             point: MaterialPoint { patch: 0, xi: foot.into() },
             jet: GapJet {
                 gap: jet.gap,
@@ -376,13 +377,13 @@ impl RigidMaster<'_> {
 }
 
 impl Master for RigidMaster<'_> {
-    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<Met> {
+    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<MasterProjection> {
         let (own, rotation) = self.seen(x);
         let jet = self.body.shape.gap(&own);
         (jet.gap.abs() <= reach).then(|| self.met(&own, &rotation, jet))
     }
 
-    fn places(&self, x: &Point<3>) -> Vec<Met> {
+    fn places(&self, x: &Point<3>) -> Vec<MasterProjection> {
         let (own, rotation) = self.seen(x);
         let around = self.body.shape.around(&own);
         let all = std::iter::once(self.body.shape.gap(&own)).chain(around);

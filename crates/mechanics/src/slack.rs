@@ -7,7 +7,7 @@
 //! Ropes that hardly stretch would come to their length all at once. So they are soft at first, and then as stiff as they are
 //! step by step: what they stretch is a part of what it was, and their shape changes as little.
 
-use crate::increment::{Way, is_curable};
+use crate::increment::{Strategy, is_curable};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::points::Order;
@@ -43,15 +43,15 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // Across itself a rope is as stiff as its tension, not as along itself.
-        let found = self.with_softer_trials(|system, _| system.stiffened(start, time, solved, report));
-        self.bodies.iter_mut().for_each(|body| body.tighten(0.0));
+        let found = self.with_scaled_trials(|system, _| system.stiffened(start, time, solved, report));
+        self.bodies.iter_mut().for_each(|body| body.add_sag_spring(0.0));
         self.soften(1.0);
         found
     }
 
     /// The energy of ropes under dead loads is convex; with tractions that are unknowns it is no measure.
-    fn way(&self) -> Way<'static> {
-        if self.contacts.is_empty() { Way::Down } else { Way::Straight }
+    fn way(&self) -> Strategy<'static> {
+        if self.contacts.is_empty() { Strategy::Down } else { Strategy::Straight }
     }
 
     /// The stiffest of what may be slack, of which all is as soft as a part of it.
@@ -73,7 +73,7 @@ impl System {
         let mut share = if self.contacts.is_empty() { (SOFT * acts / stiffest).min(1.0) } else { 1.0 };
         self.soften(share);
         let mut found = self.loosened(start, time, acts, solved, report)?;
-        self.bodies.iter_mut().for_each(|body| body.tighten(0.0));
+        self.bodies.iter_mut().for_each(|body| body.add_sag_spring(0.0));
         let mut stiffer = STIFFER;
         while share < 1.0 {
             let next = (share * stiffer).min(1.0);
@@ -98,7 +98,7 @@ impl System {
         let mut state = start.clone();
         let (mut reached, mut force, mut left) = (f64::INFINITY, FIRST * acts, LEFT);
         loop {
-            self.bodies.iter_mut().for_each(|body| body.tighten(force));
+            self.bodies.iter_mut().for_each(|body| body.add_sag_spring(force));
             match self.by(self.way(), &state, time, solved, report) {
                 Ok(found) if force == 0.0 => return Ok(found),
                 Ok(found) => {

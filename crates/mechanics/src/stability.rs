@@ -59,7 +59,7 @@ impl Stability {
 
 /// What is known of the stability of a state.
 #[derive(Clone, Debug)]
-pub(crate) enum Tested {
+pub(crate) enum StabilityTest {
     /// A pivot was zero, or a matrix singular.
     Unknown,
     Stable,
@@ -114,12 +114,12 @@ impl System {
         at: &SystemState,
         time: f64,
         neutral: f64,
-    ) -> Result<Tested, IncrementError> {
+    ) -> Result<StabilityTest, IncrementError> {
         let given = self.with_given_friction(|system| system.assemble(at, time, Order::Second))?;
         // A pivot that is zero tells nothing.
         match Pencil::new(self, &given).below(-neutral) {
-            None => return Ok(Tested::Unknown),
-            Some(0) => return Ok(Tested::Stable),
+            None => return Ok(StabilityTest::Unknown),
+            Some(0) => return Ok(StabilityTest::Stable),
             Some(_) => {}
         }
         let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
@@ -132,12 +132,12 @@ impl System {
         } else {
             pencil.leftmost(neutral, &toward)
         };
-        let Some(Eigenpair { value, vector, count }) = found else { return Ok(Tested::Unknown) };
+        let Some(Eigenpair { value, vector, count }) = found else { return Ok(StabilityTest::Unknown) };
         if value > -neutral {
-            return Ok(Tested::Stable);
+            return Ok(StabilityTest::Stable);
         }
         let direction = pencil.admissible.expand(&vector)[..pencil.count].to_vec();
-        Ok(Tested::Unstable(UnstableMode { negative: count, value, direction, metric: pencil.metric }))
+        Ok(StabilityTest::Unstable(UnstableMode { negative: count, value, direction, metric: pencil.metric }))
     }
 
     /// The eigenvalue that tells how far a state is from the loss of stability: the least of a stable one, the negative one
@@ -147,9 +147,9 @@ impl System {
     /// Places that are not there.
     pub(crate) fn critical_eigenvalue(&mut self, at: &SystemState, time: f64) -> Result<Option<f64>, IncrementError> {
         match self.test_stability(at, time, NEUTRAL)? {
-            Tested::Unknown => return Ok(None),
-            Tested::Unstable(mode) => return Ok(Some(mode.value)),
-            Tested::Stable => {}
+            StabilityTest::Unknown => return Ok(None),
+            StabilityTest::Unstable(mode) => return Ok(Some(mode.value)),
+            StabilityTest::Stable => {}
         }
         let pencil = Pencil::new(self, &self.assemble(at, time, Order::Second)?);
         Ok(pencil.is_symmetric().then(|| pencil.nearest((1.0, NEUTRAL), &at.travel)).flatten().map(|found| found.value))
@@ -171,7 +171,7 @@ impl System {
             .map(|contact| {
                 let law = contact.friction_mut()?;
                 let stated = Arc::new(law.take()?);
-                *law = Some(Box::new(Given(Arc::clone(&stated))));
+                *law = Some(Box::new(FixedFriction(Arc::clone(&stated))));
                 Some(stated)
             })
             .collect();
@@ -188,15 +188,15 @@ impl System {
 
 /// Friction whose force does not follow the pressure.
 #[derive(Debug)]
-struct Given(Arc<Box<dyn Law>>);
+struct FixedFriction(Arc<Box<dyn Law>>);
 
-impl Given {
+impl FixedFriction {
     fn without_pressure(friction: Friction) -> Friction {
         Friction { by_pressure: [0.0; 2], ..friction }
     }
 }
 
-impl Law for Given {
+impl Law for FixedFriction {
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         Self::without_pressure(self.0.friction(trial, pressure))
     }

@@ -1,6 +1,6 @@
 //! What a surface of faces is to contact by mortar: faces with functions, where they are in a state.
 
-use crate::points::{Direction, Placed};
+use crate::points::{Direction, SlavePoint};
 use signorini_contact::{ContactSurface, ShapeFunction};
 use signorini_geometry::{Point, Vector};
 
@@ -33,7 +33,7 @@ pub trait Surface: Sync {
     fn corners(&self, face: usize) -> &[Direction];
 
     /// A point as one that is tested.
-    fn placed(&self, face: usize, s: &Local) -> Placed;
+    fn placed(&self, face: usize, s: &Local) -> SlavePoint;
 
     /// The force per area that moves a face by a unit of length, about: the scale of penalties.
     fn stiffness(&self, face: usize) -> f64;

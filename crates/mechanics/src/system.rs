@@ -6,7 +6,7 @@
 
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::condensed::LinearBodies;
-use crate::interaction::{Bodies, Interaction, Own, Target};
+use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
@@ -225,7 +225,7 @@ impl System {
     }
 
     /// The numbers of each contact in a state.
-    pub(crate) fn own<'a>(&self, state: &'a SystemState) -> Vec<Own<'a>> {
+    pub(crate) fn own<'a>(&self, state: &'a SystemState) -> Vec<InteractionUnknowns<'a>> {
         let (_, count) = self.numbering();
         let mut done = 0;
         (self.contacts.iter().enumerate())
@@ -234,7 +234,11 @@ impl System {
                 let multipliers = &state.multipliers[done..done + size];
                 let first = (count + done) as u32;
                 done += size;
-                Own { multipliers, first, prediction: state.predictions.get(k).map_or(&[], Vec::as_slice) }
+                InteractionUnknowns {
+                    multipliers,
+                    first,
+                    prediction: state.predictions.get(k).map_or(&[], Vec::as_slice),
+                }
             })
             .collect()
     }
@@ -270,9 +274,9 @@ impl System {
                     single.push(held);
                     continue;
                 };
-                let lack = |h: &Held, factor: f64| h.constraint.lack / factor;
-                let other = lack(before, before.constraint.terms[0].1);
-                if (lack(&held, factor) - other).abs() > SAME * body.size() {
+                let violation = |h: &Held, factor: f64| h.constraint.violation / factor;
+                let other = violation(before, before.constraint.terms[0].1);
+                if (violation(&held, factor) - other).abs() > SAME * body.size() {
                     return Err(AssemblyError::Contradiction {
                         first: self.supports[before.support].name.clone(),
                         second: support.name.clone(),
@@ -307,15 +311,17 @@ impl System {
             // What others leave of what is lacking, and the support that says the same.
             let said = if counts.iter().all(|(unknown, _)| single(*unknown).is_some()) {
                 let others = counts.iter().filter_map(|(unknown, f)| Some((f, single(*unknown)?)));
-                let done: f64 = others.map(|(f, h)| f * h.constraint.lack / h.constraint.terms[0].1).sum();
-                single(first).map(|h| (h.support, held.constraint.lack - done))
+                let done: f64 = others.map(|(f, h)| f * h.constraint.violation / h.constraint.terms[0].1).sum();
+                single(first).map(|h| (h.support, held.constraint.violation - done))
             } else {
                 let alike = by_first.get(&first).into_iter().flatten().map(|k| &out[*k]);
                 let mut found = alike.filter_map(|other| Some((other, ratio(terms, &other.constraint.terms)?)));
-                found.next().map(|(other, r)| (other.support, held.constraint.lack - r * other.constraint.lack))
+                found
+                    .next()
+                    .map(|(other, r)| (other.support, held.constraint.violation - r * other.constraint.violation))
             };
             match said {
-                Some((other, lack)) if lack.abs() > SAME * body.size() * size => {
+                Some((other, violation)) if violation.abs() > SAME * body.size() * size => {
                     return Err(AssemblyError::Contradiction {
                         first: self.supports[other].name.clone(),
                         second: self.supports[held.support].name.clone(),
@@ -420,7 +426,7 @@ impl System {
         }
         let mut lost = 0;
         for (contact, own) in self.contacts.iter().zip(self.own(state)) {
-            let mut target = Target {
+            let mut target = Assembler {
                 residual: &mut residual,
                 sizes: &mut sizes,
                 tangent: (order == Order::Second).then_some(&mut tangent),
@@ -430,7 +436,7 @@ impl System {
         for (k, held) in coupled.iter().enumerate() {
             let row = count + multipliers + k;
             let reaction = state.reactions.get(k).copied().unwrap_or(0.0);
-            residual[row] = held.constraint.lack;
+            residual[row] = held.constraint.violation;
             for &(unknown, factor) in &held.constraint.terms {
                 residual[unknown as usize] += factor * reaction;
                 sizes[unknown as usize] += (factor * reaction).abs();

@@ -203,7 +203,7 @@ impl Linearised {
     }
 
     /// A small step off an unstable equilibrium, along its most unstable direction, the way that enlarges the zone.
-    pub fn kick(&self, spectrum: &Spectrum, h: f64) -> Vec<f64> {
+    pub fn perturbation(&self, spectrum: &Spectrum, h: f64) -> Vec<f64> {
         let Some(vector) = spectrum.vectors.first() else { return vec![0.0; self.n] };
         let growth: f64 = vector.iter().zip(&self.growth).map(|(v, g)| v * g).sum();
         let length = self.size(vector).max(f64::MIN_POSITIVE);

@@ -6,8 +6,8 @@ use crate::equilibrium::elements::Elements;
 use crate::front::Fronts;
 use crate::problem::Membrane;
 use crate::refinement::Refinement;
-use crate::rest::SHARPEST;
 use crate::scales::Scales;
+use crate::stopping::SHARPEST;
 use crate::zone::{Zone, contact_index};
 use signorini_solve::{Progress, SolveError, dense};
 

@@ -4,7 +4,7 @@ use crate::conditions::least_free_gap;
 use crate::equilibrium::Equilibrium;
 use crate::equilibrium::elements::Elements;
 use crate::history::{History, Statement, WithZones};
-use crate::ils::{self, Rest};
+use crate::ils::{self, StoppingRule};
 use crate::line_zone::LineZone;
 use crate::obstacle::Side;
 use crate::plane_zone::PlaneZone;
@@ -93,7 +93,7 @@ fn free<const D: usize, Z: Zone<D> + Sync + 'static>(membrane: &Membrane<D>) -> 
 
 /// A membrane on a line in contact, from the membrane without contact on.
 pub fn solve_line(membrane: &Membrane<1>, progress: &mut dyn Progress) -> Solution<1, LineZone> {
-    ils::solve(membrane, &mut Elements::new(membrane), Start::Free, Rest::Final, (0, 0.0), progress)
+    ils::solve(membrane, &mut Elements::new(membrane), Start::Free, StoppingRule::Final, (0, 0.0), progress)
 }
 
 /// The equilibrium of a membrane on a line around a zone.

@@ -27,12 +27,12 @@ pub mod quadrature;
 mod raster;
 pub mod refinement;
 pub mod report;
-mod rest;
 pub mod scales;
 pub mod shape_rate;
 pub mod sizing;
 pub mod solution;
 pub mod staircase;
+mod stopping;
 pub mod zone;
 
 /// Inner parts for the tests in `tests`; no part of the interface.
@@ -41,7 +41,7 @@ pub mod testing {
     pub use crate::deferred::Known;
     pub use crate::history::bridge::nearest;
     pub use crate::history::mergers::at_zero;
-    pub use crate::history::seek::Seeker;
+    pub use crate::history::seek::AreaController;
     pub use crate::history::statement::{Control, PlannedIncrement};
     pub use crate::mode_matrix::{MANY_MODES, ModeMatrix};
     pub use crate::multigrid::interior::Interior;
@@ -52,7 +52,7 @@ pub mod testing {
     pub use crate::plane_zone::motion::swept;
     pub use crate::published::level_set::NodalLevelSet;
     pub use crate::raster::Raster;
-    pub use crate::rest::{Course, Rest, Sight, Verdict};
+    pub use crate::stopping::{Decision, IterationHistory, Observation, StoppingRule};
     use signorini_fem::Grid;
 
     /// Cells near the fronts of a zone.

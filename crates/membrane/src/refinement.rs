@@ -11,10 +11,10 @@ use crate::ils;
 use crate::method::Formulation;
 use crate::prediction::prediction;
 use crate::problem::Membrane;
-use crate::rest::{Rest, SETTLED_COARSE};
 use crate::scales::Scales;
 use crate::sizing::Sizing;
 use crate::solution::{Reason, Solution, Start};
+use crate::stopping::{SETTLED_COARSE, StoppingRule};
 use crate::zone::Zone;
 use signorini_fem::Grid;
 use signorini_geometry::{Aabb, Point};
@@ -110,7 +110,8 @@ impl<const D: usize> Refinement<D> {
             return None;
         }
         let start = Start::Zone(zone.clone(), scales.on(&coarse), Branch::Stable);
-        let found = ils::solve(&coarse, &mut Elements::new(&coarse), start, Rest::BeforeRefinement, at, progress);
+        let found =
+            ils::solve(&coarse, &mut Elements::new(&coarse), start, StoppingRule::BeforeRefinement, at, progress);
         found.reason.converged().then_some((found.zone, found.iterations))
     }
 
@@ -207,7 +208,7 @@ impl<const D: usize> Refinement<D> {
             Start::Free => Branch::Stable,
         };
         let last = cells.sizing.is_some() || D != 2 || self.most == 0;
-        let rest = if last { Rest::Final } else { Rest::BeforeDivision };
+        let rest = if last { StoppingRule::Final } else { StoppingRule::BeforeDivision };
         let found = ils::solve_from(&cells, elements, start, known, rest, at, progress);
         let mut search =
             Search { refinement: self, membrane, branch, at, progress, cells, found, finer: 0, predicted: false };
@@ -256,7 +257,7 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         let more = || step.sizing(self.membrane, &zone, 1).filter(|_| too_large);
         let sizing = step.sizing(self.membrane, &zone, self.finer).or_else(more)?;
         let first = self.cells.sizing.is_none() || most < self.refinement.most;
-        let rest = if first { Rest::BeforeMoreDivision } else { Rest::Final };
+        let rest = if first { StoppingRule::BeforeMoreDivision } else { StoppingRule::Final };
         let (mut cells, mut next) = self.about(&step, zone, sizing, scales, rest)?;
         next.before = self.found.before + self.found.iterations;
         if self.is_lost(&next)
@@ -325,7 +326,7 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         zone: Z,
         sizing: Sizing<D>,
         scales: Scales,
-        rest: Rest,
+        rest: StoppingRule,
     ) -> Option<(Membrane<D>, Solution<D, Z>)> {
         let cells = refinement.divided(self.membrane, &zone, sizing)?;
         let start = Start::Zone(zone, scales.on(&cells), self.branch);
@@ -356,7 +357,7 @@ impl<const D: usize, Z: Zone<D>> Search<'_, D, Z> {
         // Smaller cells turned out not to be wanted, or not to be had.
         let left = (found.zone.clone(), found.conditions.take(), found.settled_within, found.unresolved.take());
         let true_enough = left.2.is_none_or(|step| step < SETTLED_COARSE);
-        let mut next = ils::resume(&cells, found, Rest::Final, at, progress);
+        let mut next = ils::resume(&cells, found, StoppingRule::Final, at, progress);
         if matches!(next.reason, Reason::IterationLimit | Reason::LinearSolver(_))
             && true_enough
             && let Ok(state) = Equilibrium::solve(&cells, &left.0, &mut Elements::new(&cells))

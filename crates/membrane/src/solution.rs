@@ -4,8 +4,8 @@ use crate::adhesion::Branch;
 use crate::conditions::Conditions;
 use crate::equilibrium::Equilibrium;
 use crate::problem::Membrane;
-use crate::rest::SETTLED;
 use crate::scales::Scales;
+use crate::stopping::SETTLED;
 
 /// How a solve ended.
 #[derive(Clone, Debug, PartialEq, Eq)]

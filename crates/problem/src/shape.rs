@@ -83,7 +83,7 @@ impl Shape {
 /// A shape with a closed form, as its keys state it.
 pub trait ClosedForm {
     /// Where it stands.
-    fn stance(&self) -> Stance<'_>;
+    fn placement(&self) -> Placement<'_>;
 
     /// Reads it; errors that belong to no key of it are those of `shape`.
     ///
@@ -93,7 +93,7 @@ pub trait ClosedForm {
 }
 
 /// Where a shape stands, by its keys.
-pub struct Stance<'a> {
+pub struct Placement<'a> {
     /// As the key is called, and as messages call it.
     pub name: &'static str,
     pub noun: &'static str,
@@ -101,11 +101,11 @@ pub struct Stance<'a> {
     pub place: Option<&'a List<Value>>,
     /// Of a shape that is one in space only: round about this axis.
     pub axis: Option<&'a List<Value>>,
-    pub looks: Looks<'a>,
+    pub orientation: Orientation<'a>,
 }
 
 /// Where the surface of a shape looks.
-pub enum Looks<'a> {
+pub enum Orientation<'a> {
     Anywhere,
     /// Along a direction, or against it where the sign is negative.
     Along(&'a List<Value>, f64),
@@ -113,9 +113,9 @@ pub enum Looks<'a> {
     Round(Option<&'a List<Value>>),
 }
 
-impl Stance<'_> {
+impl Placement<'_> {
     fn of(name: &'static str) -> Self {
-        Stance { name, noun: name, place: None, axis: None, looks: Looks::Anywhere }
+        Placement { name, noun: name, place: None, axis: None, orientation: Orientation::Anywhere }
     }
 }
 
@@ -146,8 +146,8 @@ pub struct Plane {
 }
 
 impl ClosedForm for Plane {
-    fn stance(&self) -> Stance<'_> {
-        Stance { looks: Looks::Along(&self.normal, 1.0), ..Stance::of("plane") }
+    fn placement(&self) -> Placement<'_> {
+        Placement { orientation: Orientation::Along(&self.normal, 1.0), ..Placement::of("plane") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -165,8 +165,8 @@ pub struct Sphere {
 }
 
 impl ClosedForm for Sphere {
-    fn stance(&self) -> Stance<'_> {
-        Stance { place: Some(&self.center), looks: Looks::Round(None), ..Stance::of("sphere") }
+    fn placement(&self) -> Placement<'_> {
+        Placement { place: Some(&self.center), orientation: Orientation::Round(None), ..Placement::of("sphere") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -186,8 +186,12 @@ pub struct Cylinder {
 }
 
 impl ClosedForm for Cylinder {
-    fn stance(&self) -> Stance<'_> {
-        Stance { place: Some(&self.point), looks: Looks::Round(self.axis.as_ref()), ..Stance::of("cylinder") }
+    fn placement(&self) -> Placement<'_> {
+        Placement {
+            place: Some(&self.point),
+            orientation: Orientation::Round(self.axis.as_ref()),
+            ..Placement::of("cylinder")
+        }
     }
 
     fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -208,9 +212,9 @@ pub struct Cone {
 }
 
 impl ClosedForm for Cone {
-    fn stance(&self) -> Stance<'_> {
-        let looks = Looks::Along(&self.axis, -1.0);
-        Stance { place: Some(&self.apex), looks, axis: Some(&self.axis), ..Stance::of("cone") }
+    fn placement(&self) -> Placement<'_> {
+        let orientation = Orientation::Along(&self.axis, -1.0);
+        Placement { place: Some(&self.apex), orientation, axis: Some(&self.axis), ..Placement::of("cone") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -236,8 +240,8 @@ pub struct Ellipsoid {
 }
 
 impl ClosedForm for Ellipsoid {
-    fn stance(&self) -> Stance<'_> {
-        Stance { place: Some(&self.center), looks: Looks::Round(None), ..Stance::of("ellipsoid") }
+    fn placement(&self) -> Placement<'_> {
+        Placement { place: Some(&self.center), orientation: Orientation::Round(None), ..Placement::of("ellipsoid") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -264,9 +268,9 @@ pub struct Torus {
 }
 
 impl ClosedForm for Torus {
-    fn stance(&self) -> Stance<'_> {
-        let looks = Looks::Round(Some(&self.axis));
-        Stance { place: Some(&self.center), looks, axis: Some(&self.axis), ..Stance::of("torus") }
+    fn placement(&self) -> Placement<'_> {
+        let orientation = Orientation::Round(Some(&self.axis));
+        Placement { place: Some(&self.center), orientation, axis: Some(&self.axis), ..Placement::of("torus") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -292,9 +296,9 @@ pub struct Paraboloid {
 }
 
 impl ClosedForm for Paraboloid {
-    fn stance(&self) -> Stance<'_> {
-        let looks = Looks::Along(&self.axis, -1.0);
-        Stance { place: Some(&self.apex), looks, axis: Some(&self.axis), ..Stance::of("paraboloid") }
+    fn placement(&self) -> Placement<'_> {
+        let orientation = Orientation::Along(&self.axis, -1.0);
+        Placement { place: Some(&self.apex), orientation, axis: Some(&self.axis), ..Placement::of("paraboloid") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, shape: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
@@ -317,9 +321,9 @@ pub struct Revolution {
 }
 
 impl ClosedForm for Revolution {
-    fn stance(&self) -> Stance<'_> {
+    fn placement(&self) -> Placement<'_> {
         let noun = "body of revolution";
-        Stance { place: self.origin.as_ref(), axis: Some(&self.axis), noun, ..Stance::of("revolution") }
+        Placement { place: self.origin.as_ref(), axis: Some(&self.axis), noun, ..Placement::of("revolution") }
     }
 
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {

@@ -1,6 +1,6 @@
 //! What fields are called in a page, and their units.
 
-use signorini::report::{Carried, UnitNames};
+use signorini::report::{TractionKind, UnitNames};
 
 /// A field that can be shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ const LEFT_OUT: [&str; 19] = [
 
 /// Name and unit of a field of the files; none for what is not shown. Units of pressures of contacts are those of what a
 /// contact carries.
-pub fn named(name: &str, units: Option<&UnitNames>, carries: Carried) -> Option<Named> {
+pub fn named(name: &str, units: Option<&UnitNames>, carries: TractionKind) -> Option<Named> {
     if LEFT_OUT.contains(&name) {
         return None;
     }
@@ -43,9 +43,9 @@ pub fn named(name: &str, units: Option<&UnitNames>, carries: Carried) -> Option<
     let (label, unit) = match name {
         "von_mises" => ("Equivalent stress (von Mises)", unit(|u| &u.pressure)),
         "contact_pressure" => match carries {
-            Carried::Pressure => ("Contact pressure", carried()),
-            Carried::LineLoad => ("Contact force per length", carried()),
-            Carried::Force => ("Contact force", carried()),
+            TractionKind::Pressure => ("Contact pressure", carried()),
+            TractionKind::LineLoad => ("Contact force per length", carried()),
+            TractionKind::Force => ("Contact force", carried()),
         },
         "displacement" => ("Displacement", unit(|u| &u.length)),
         "gap" => ("Gap", unit(|u| &u.length)),

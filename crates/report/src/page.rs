@@ -7,7 +7,7 @@ use crate::scene::{Context, Scene, of_frames, scene};
 use crate::sections::pictures::{Picture, pictures};
 use crate::sections::{answers, asked, convergence, environment, others, results, verdict, warnings};
 use serde::Serialize;
-use signorini::report::Carried;
+use signorini::report::TractionKind;
 
 const PAGE: &str = include_str!("../assets/page.html");
 const STYLE: &str = concat!(include_str!("../assets/libraries/uPlot.min.css"), include_str!("../assets/page.css"));
@@ -115,7 +115,7 @@ fn context(results: &Results) -> Context<'_> {
     Context {
         bodies: names.collect(),
         units: results.summary().and_then(|s| s.units.as_ref()),
-        carries: carries.map_or(Carried::Pressure, |c| c.carries),
+        carries: carries.map_or(TractionKind::Pressure, |c| c.carries),
         time: results.closest(),
     }
 }

@@ -9,7 +9,7 @@ use crate::surface::{Topology, thinned, without_volume};
 use crate::view::view;
 use rayon::prelude::*;
 use serde::Serialize;
-use signorini::report::{Carried, UnitNames};
+use signorini::report::{TractionKind, UnitNames};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
@@ -93,7 +93,7 @@ pub struct Shape {
 pub struct Context<'a> {
     pub bodies: Vec<String>,
     pub units: Option<&'a UnitNames>,
-    pub carries: Carried,
+    pub carries: TractionKind,
     /// The time that is seen first; the last one if left out.
     pub time: Option<f64>,
 }

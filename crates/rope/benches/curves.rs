@@ -16,7 +16,7 @@ use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::Continuity;
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 use std::f64::consts::{FRAC_PI_4, PI};
@@ -66,10 +66,13 @@ fn wrapped(elements: usize, is_smooth: bool) {
     let path = Path::circle(V::zeros(), V::x(), -V::z(), 1.0, 1.5 * PI).expect("an arc");
     let rope: Box<dyn Body> = if is_smooth {
         let path = path.sample(elements, Continuity::C1).expect("elements");
-        Box::new(Cable::new("rope", &path, 1e4, 0.0, Carries::TensionOnly, Rest::Pretension(1.0), 0.0).expect("a rope"))
+        Box::new(
+            Cable::new("rope", &path, 1e4, 0.0, Carries::TensionOnly, ReferenceLength::Pretension(1.0), 0.0)
+                .expect("a rope"),
+        )
     } else {
         let path = path.sample(elements, Continuity::C0).expect("elements");
-        Box::new(Chain::new("rope", &path, 1e4, Rest::Pretension(1.0), 0.0).expect("a rope"))
+        Box::new(Chain::new("rope", &path, 1e4, ReferenceLength::Pretension(1.0), 0.0).expect("a rope"))
     };
     let drum = RigidBody {
         name: "drum".into(),

@@ -5,7 +5,7 @@ use crate::hermite::{gauss, lobatto};
 use crate::place::{self, Part};
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Matrix, Point, Vector};
-use signorini_mechanics::body::{Body, BodyState, Foot, Function, Master, PlaceError, Placed, Sampling, Site};
+use signorini_mechanics::body::{Body, BodyState, Foot, Function, Master, PlaceError, Sampling, Site, SlavePoint};
 use signorini_mechanics::curve::{Curve, CurveMaster, CurvePoint};
 
 /// How a section turns.
@@ -124,12 +124,12 @@ pub fn sites(body: &dyn CurveBody, on: Option<&str>, sampling: Sampling) -> Resu
 }
 
 /// A site where it is now.
-pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> Placed {
+pub fn placed(body: &dyn CurveBody, state: &BodyState, site: &Site) -> SlavePoint {
     let (element, xi) = (site.patch as usize, site.xi[0]);
     let line = body.centreline();
     let jet = line.jet(&state.configuration, element, xi);
     let SectionMotion { spin, frame } = body.section(&state.configuration, element, xi);
-    Placed {
+    SlavePoint {
         x: jet.x,
         outward: None,
         averaged: None,

@@ -40,7 +40,7 @@ pub mod testing {
     pub use crate::paths::output::{Line, LinePoint};
     pub use crate::paths::picture::Cover;
     pub use crate::paths::surface::Surface;
-    pub use crate::plan::placed::Placed;
+    pub use crate::plan::located::LocatedExpression;
     pub use crate::plan::rigid::RigidBody;
     pub use crate::queries::points::read;
     pub use crate::queries::shapes::{KEPT, Shapes};

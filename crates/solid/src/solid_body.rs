@@ -32,7 +32,7 @@ use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Direction, Hold, Load, Master, Order,
-    PlaceError, Placed, Sampling, Site, Surface,
+    PlaceError, Sampling, Site, SlavePoint, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -297,7 +297,7 @@ impl<const D: usize> Body for SolidBody<D> {
         Ok(self.faces.sites(on.unwrap_or("boundary"), sampling))
     }
 
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         match self.edge_at(site) {
             Some((edge, element)) => edge.placed(element, site, &state.configuration),
             None => self.faces.placed(site, &state.configuration),

@@ -104,9 +104,9 @@ impl<const D: usize> CellSolid<D> {
                 // Forces on the functions that add up to one make the resultant, in their shares.
                 let share = self.linear.one[f as usize];
                 let (factor, counts) = if share == 0.0 { (1.0, 0.0) } else { (1.0 / share, 1.0) };
-                let lack = factor * (u[unknown as usize] - wanted);
+                let violation = factor * (u[unknown as usize] - wanted);
                 let reaction = [axis(i) * counts, Vector::<3>::zeros()];
-                out.push(Constraint { terms: vec![(unknown, factor)], lack, reaction });
+                out.push(Constraint { terms: vec![(unknown, factor)], violation, reaction });
             }
         }
         Ok(out)

@@ -19,7 +19,7 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
 use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 use signorini_mechanics::pair::axis;
-use signorini_mechanics::{Anchor, Foot, Function, Master, MaterialPoint, Met, Site};
+use signorini_mechanics::{Anchor, Foot, Function, Master, MasterProjection, MaterialPoint, Site};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -231,10 +231,10 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
         }
     }
 
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<MasterProjection> {
         let (number, found) = self.met(x, reach, except)?;
         let is_within = (spatial(&found.at.now()) - x).norm() <= reach;
-        is_within.then(|| Met::Foot(Box::new(self.foot(x, number, &found))))
+        is_within.then(|| MasterProjection::Foot(Box::new(self.foot(x, number, &found))))
     }
 
     fn gap(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<f64> {

@@ -3,7 +3,7 @@
 use signorini_geometry::{Aabb, Matrix, Point};
 
 /// What is to know about a cell whose map is not linear.
-pub(super) struct Bent {
+pub(super) struct CurvedCell {
     pub(super) bounds: Aabb<2>,
     pub(super) size: f64,
     pub(super) volume: f64,

@@ -30,7 +30,7 @@ use crate::overlap::BULGE;
 use crate::reference::CellShape;
 use crate::small;
 use boundary::boundary;
-use curved::{Bent, box_round, edges, longest};
+use curved::{CurvedCell, box_round, edges, longest};
 use rule::{RulePoint, tabulated};
 use signorini_geometry::{Aabb, Point};
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ pub struct MeshCells {
     degree: usize,
     /// For each cell whose map is not linear, its place in `bent`.
     bent_at: Vec<u32>,
-    bent: Vec<Bent>,
+    bent: Vec<CurvedCell>,
     /// Rule of each map, tabulated.
     rules: Vec<Vec<RulePoint>>,
     buckets: Grid<2>,
@@ -154,7 +154,7 @@ impl MeshCells {
             }
             let regular = least > 0.2 * volume / if vertices.len() == 3 { 0.5 } else { 4.0 };
             bent_at.push(bent.len() as u32);
-            bent.push(Bent { bounds, size, volume, centre, inverse: small::inverse(&jacobian), regular });
+            bent.push(CurvedCell { bounds, size, volume, centre, inverse: small::inverse(&jacobian), regular });
         }
         for cell in 0..count {
             rules.entry(mesh.map_number(cell)).or_insert_with(|| tabulated(mesh.map(cell), degree));
@@ -284,7 +284,7 @@ impl MeshCells {
         (self.volume(cell) * if self.mesh.shape(cell) == CellShape::Triangle { 2.0 } else { 1.0 }).sqrt()
     }
 
-    fn bent(&self, cell: usize) -> Option<&Bent> {
+    fn bent(&self, cell: usize) -> Option<&CurvedCell> {
         self.bent.get(self.bent_at[cell] as usize)
     }
 
@@ -295,7 +295,7 @@ impl MeshCells {
     }
 }
 
-fn bounds_of(mesh: &Mesh<2>, bent_at: &[u32], bent: &[Bent], cell: usize) -> Aabb<2> {
+fn bounds_of(mesh: &Mesh<2>, bent_at: &[u32], bent: &[CurvedCell], cell: usize) -> Aabb<2> {
     match bent.get(bent_at[cell] as usize) {
         Some(bent) => bent.bounds,
         None => box_round(mesh.vertices(cell).map(|n| mesh.nodes()[n as usize])),

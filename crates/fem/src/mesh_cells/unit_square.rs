@@ -10,9 +10,9 @@ use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
 impl MeshCells {
     /// The quadrature of a cell that surfaces cut, of the order on each smooth piece.
     pub(super) fn cut_in_square(&self, cell: usize, partition: &CellPartition<'_, 2>, order: usize) -> CellRule<2> {
-        let square = Square::new(self, cell, partition);
+        let square = UnitCell::new(self, cell, partition);
         let sheets = partition.sheets.iter().map(|sheet| {
-            let drawn: Box<dyn ImplicitShape<2> + '_> = Box::new(Drawn { square: &square, sheet: &**sheet });
+            let drawn: Box<dyn ImplicitShape<2> + '_> = Box::new(MappedCell { square: &square, sheet: &**sheet });
             drawn
         });
         let drawn = CellPartition {
@@ -43,14 +43,14 @@ impl MeshCells {
 }
 
 /// The unit square drawn onto a cell.
-struct Square<'a> {
+struct UnitCell<'a> {
     cells: &'a MeshCells,
     cell: usize,
     /// For a triangle, the vertices: the first takes a whole side of the square.
     corners: Option<[Local; 3]>,
 }
 
-impl<'a> Square<'a> {
+impl<'a> UnitCell<'a> {
     fn new(cells: &'a MeshCells, cell: usize, partition: &CellPartition<'_, 2>) -> Self {
         let shape = cells.mesh.shape(cell);
         let corners = (shape == CellShape::Triangle).then(|| {
@@ -106,12 +106,12 @@ impl<'a> Square<'a> {
 }
 
 /// A surface in the coordinates of the unit square.
-struct Drawn<'a> {
-    square: &'a Square<'a>,
+struct MappedCell<'a> {
+    square: &'a UnitCell<'a>,
     sheet: &'a dyn ImplicitShape<2>,
 }
 
-impl ImplicitShape<2> for Drawn<'_> {
+impl ImplicitShape<2> for MappedCell<'_> {
     fn value(&self, s: &Point<2>) -> f64 {
         self.sheet.value(&self.square.at(s).0)
     }

@@ -1,8 +1,8 @@
 //! Residual and tangent of a contact.
 
-use super::{Contact, Sides, Touch};
+use super::{Contact, MeasuredPair, Sides};
 use crate::body::PlaceError;
-use crate::interaction::Target;
+use crate::interaction::Assembler;
 use crate::pair::NoPair;
 use crate::points::Sampling;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ impl Contact {
         &self,
         sides: &Sides<'_>,
         (lambda, first): (&[f64], u32),
-        out: &mut Target<'_>,
+        out: &mut Assembler<'_>,
     ) -> Result<usize, PlaceError> {
         let master = self.met(sides)?;
         let linearises = out.tangent.is_some();
@@ -27,8 +27,9 @@ impl Contact {
         // Pairs are found side by side and added one after the other.
         let find = |k: usize| {
             let at = self.multiplier(k, lambda);
-            let is_closed =
-                |touch: &Touch| linearises && self.traction(k, touch, at, [0.0; 2]).projected.status != Status::Open;
+            let is_closed = |touch: &MeasuredPair| {
+                linearises && self.traction(k, touch, at, [0.0; 2]).projected.status != Status::Open
+            };
             let farthest = self.closes_within(k, sides, at);
             self.pair(k, sides, (master.as_ref(), farthest), is_closed).1
         };
@@ -38,11 +39,12 @@ impl Contact {
         let at_once = if passes_on { count.max(1) } else { AT_ONCE };
         let found_in = |first: usize| -> Vec<_> {
             let end = (first + at_once).min(count);
-            let found = (first..end).into_par_iter().map(find).collect::<Vec<Option<Result<Touch, NoPair>>>>();
-            let passed = if passes_on { self.passed(&found, lambda) } else { vec![[0.0; 2]; found.len()] };
-            found.into_iter().zip(passed).collect()
+            let found = (first..end).into_par_iter().map(find).collect::<Vec<Option<Result<MeasuredPair, NoPair>>>>();
+            let redistributed =
+                if passes_on { self.redistributed_friction(&found, lambda) } else { vec![[0.0; 2]; found.len()] };
+            found.into_iter().zip(redistributed).collect()
         };
-        for (k, (found, passed)) in (0..count).step_by(at_once).flat_map(found_in).enumerate() {
+        for (k, (found, redistributed)) in (0..count).step_by(at_once).flat_map(found_in).enumerate() {
             let own = |i: usize| first + (parts * k + i) as u32;
             let at = self.multiplier(k, lambda);
             let w = self.sites[k].weight;
@@ -62,16 +64,16 @@ impl Contact {
                     continue;
                 }
             };
-            let found = self.traction(k, &touch, at, passed);
+            let found = self.traction(k, &touch, at, redistributed);
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             let on_slave = found.axes[0] * t1 + found.axes[1] * t2;
             let n = pair.unknowns.len();
             for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                let rubs = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
-                let force = -w * p * pair.opening[a] + rubs;
+                let has_friction = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
+                let force = -w * p * pair.opening[a] + has_friction;
                 out.residual[unknown as usize] += force;
-                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + rubs.abs();
+                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + has_friction.abs();
             }
             for i in 0..parts {
                 let value = w / c * (found.projected.traction[i] - at[i]);

@@ -6,7 +6,10 @@ use crate::body::Body;
 use crate::body::PlaceError;
 use crate::enforcement::{Outer, SOFTER, WAVE};
 use crate::inside::Inside;
-use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
+use crate::interaction::{
+    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, StatePath, hardened, take_over,
+    towards,
+};
 use crate::pair::Stuck;
 use crate::part::Part;
 use crate::points::{MaterialPoint, Sampling, Site};
@@ -67,13 +70,13 @@ impl Interaction for Contact {
         list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()
     }
 
-    fn remembered(&self) -> Vec<f64> {
+    fn previous_multipliers(&self) -> Vec<f64> {
         self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
     }
 
     /// A curve under tension presses on what it lies along: what is out of balance at its nodes tells by how much.
-    fn guess(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
-        let mut out = self.remembered();
+    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
+        let mut out = self.previous_multipliers();
         let sides = at.sides(self);
         let (body, state) = sides.master;
         let is_curve = sides.slave.0.curve(self.slave.group.as_deref()).is_some();
@@ -149,11 +152,16 @@ impl Interaction for Contact {
         self.keep(&kept);
     }
 
-    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError> {
         self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
     }
 
-    fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+    fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         let (body, state) = at.side(&self.slave);
         if self.sampling != Sampling::Nodes {
             return Ok(None);
@@ -164,12 +172,12 @@ impl Interaction for Contact {
         Ok(between_sites(surface.as_ref(), &rest, &self.results(at, own)?))
     }
 
-    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
     }
 
-    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        Ok(self.share_of_way(way))
+    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
+        Ok(self.share_of_way(path))
     }
 
     fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
@@ -178,7 +186,7 @@ impl Interaction for Contact {
         at.inside([&self.slave, &self.master], &sites, is_start)
     }
 
-    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
+    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         let sides = at.sides(self);
         self.accept_sites(&sides, own.multipliers)
     }
@@ -190,9 +198,9 @@ impl Interaction for Contact {
     fn augment(
         &mut self,
         at: Bodies<'_>,
-        own: Own<'_>,
+        own: InteractionUnknowns<'_>,
         found: &[SiteResult],
-        around: Around,
+        around: OuterIteration,
     ) -> Result<f64, PlaceError> {
         match self.enforcement.outer() {
             Outer::TakesOver => {
@@ -222,7 +230,7 @@ impl Interaction for Contact {
         self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
     }
 
-    fn restate(&mut self) {
+    fn restore_law(&mut self) {
         if let Some(stated) = self.set_aside.take() {
             stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
         }

@@ -14,7 +14,7 @@ use super::traction::STEEP;
 use super::{Contact, Sides};
 use crate::body::PlaceError;
 use crate::pair::{Axis, AxisChoice, Pair, Stuck, any_tangent};
-use crate::points::{Anchor, Master, MaterialPoint, Order, Placed};
+use crate::points::{Anchor, Master, MaterialPoint, Order, SlavePoint};
 use rayon::prelude::*;
 use signorini_geometry::Vector;
 use std::sync::OnceLock;
@@ -45,7 +45,7 @@ pub(crate) struct Partner {
 
 impl Partner {
     /// The pair of a site with the point that it faces; `first` are the first unknowns of slave and master.
-    pub fn pair(&self, placed: &Placed, anchor: &Anchor, first: [u32; 2], order: Order) -> Pair {
+    pub fn pair(&self, placed: &SlavePoint, anchor: &Anchor, first: [u32; 2], order: Order) -> Pair {
         let normal = self.normal;
         let of_slave = placed.functions.iter().map(|f| (first[0] + f.unknown, normal.dot(&f.value)));
         let of_master = anchor.functions.iter().map(|f| (first[1] + f.unknown, -normal.dot(&f.value)));
@@ -64,7 +64,7 @@ impl Partner {
     }
 
     /// Adds slip to a pair that has its gap.
-    pub fn add_slip(&self, placed: &Placed, anchor: &Anchor, pair: &mut Pair) {
+    pub fn add_slip(&self, placed: &SlavePoint, anchor: &Anchor, pair: &mut Pair) {
         let across = |d: Vector<3>| d - self.normal * self.normal.dot(&d);
         let of_slave = placed.functions.iter().map(|f| across(f.value));
         let of_master = anchor.functions.iter().map(|f| -across(f.value));

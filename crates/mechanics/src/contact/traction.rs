@@ -1,6 +1,6 @@
 //! The traction of a site by the law, and the axes of its friction.
 
-use super::{Contact, Touch};
+use super::{Contact, MeasuredPair};
 use crate::pair::{Pair, any_tangent};
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
@@ -17,8 +17,14 @@ pub(super) struct Traction {
 }
 
 impl Contact {
-    /// The traction by the law; linearised about a trial with as much more friction as is `passed` on to the site.
-    pub(super) fn traction(&self, k: usize, touch: &Touch, unknown: [f64; 3], passed: [f64; 2]) -> Traction {
+    /// The traction by the law; linearised about a trial with as much more friction as is `redistributed` on to the site.
+    pub(super) fn traction(
+        &self,
+        k: usize,
+        touch: &MeasuredPair,
+        unknown: [f64; 3],
+        redistributed: [f64; 2],
+    ) -> Traction {
         let c = self.stiffness[k];
         let pair = &touch.pair;
         let (axes, d_axes) = if self.friction.is_some() { axes(pair) } else { ([Vector::<3>::zeros(); 2], Vec::new()) };
@@ -39,7 +45,7 @@ impl Contact {
         let trial = |i: usize| if moves[i] { lambda[i + 1] + c * slip[i] } else { 0.0 };
         let per_velocity = c * (self.times[1] - self.times[0]);
         let project = |trial: [f64; 3]| law.project_in_time(trial, per_velocity);
-        let about = |i: usize| if moves[i] { trial(i) + passed[i] } else { 0.0 };
+        let about = |i: usize| if moves[i] { trial(i) + redistributed[i] } else { 0.0 };
         let mut projected = project([lambda[0] - c * pair.gap, about(0), about(1)]);
         for i in (0..2).filter(|i| !moves[*i]) {
             projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
@@ -49,9 +55,11 @@ impl Contact {
             let beyond = project([p, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
             (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
         }
-        if passed != [0.0; 2] {
+        if redistributed != [0.0; 2] {
             let d = projected.derivative;
-            (0..2).for_each(|a| projected.traction[1 + a] -= d[1 + a][1] * passed[0] + d[1 + a][2] * passed[1]);
+            (0..2).for_each(|a| {
+                projected.traction[1 + a] -= d[1 + a][1] * redistributed[0] + d[1 + a][2] * redistributed[1]
+            });
         }
         Traction { projected, axes, d_axes, slip, trial: [trial(0), trial(1)] }
     }

@@ -5,7 +5,7 @@
 //! that the curve turns by less than 15 degrees between them.
 
 use super::{Closure, Continuity, Curve};
-use crate::points::{Anchor, Foot, Master, MaterialPoint, Met, Site};
+use crate::points::{Anchor, Foot, Master, MasterProjection, MaterialPoint, Site};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Aabb, Point, Vector};
@@ -135,7 +135,7 @@ impl<'a> CurveMaster<'a> {
 }
 
 impl Master for CurveMaster<'_> {
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<MasterProjection> {
         let curve = self.curve.as_ref();
         let mut best: Option<Minimum> = None;
         // Distances of surfaces: the curve lies deeper by the radius of the section.
@@ -161,7 +161,7 @@ impl Master for CurveMaster<'_> {
             let foot = curve.foot(self.configuration, m.element, m.xi, m.coordinates);
             Foot { spin_bends: curve.spin_bends(self.configuration, m.element, m.xi), ..foot }
         };
-        best.map(|m| Met::Foot(Box::new(foot(m))))
+        best.map(|m| MasterProjection::Foot(Box::new(foot(m))))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

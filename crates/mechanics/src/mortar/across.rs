@@ -15,7 +15,7 @@
 
 use super::cover::{CoveredPoint, Seen};
 use super::measure::{Apart, Matched};
-use super::terms::{Carried, FaceTerms, Line, Traction, Wanted};
+use super::terms::{FaceTerms, Line, NodeTractions, Traction, Wanted};
 use crate::pair::axis;
 use crate::points::Direction;
 use crate::surface::{Local, Surface};
@@ -47,7 +47,7 @@ struct Variables<'a> {
 type Mover = (usize, f64, [f64; 2]);
 
 /// A point of the slave face, and what it sees.
-struct Sight {
+struct FacePoint {
     /// `D`, its part along the normal, and that.
     apart: Vector<3>,
     gap: f64,
@@ -77,7 +77,7 @@ impl<'a> Variables<'a> {
     }
 
     /// What is seen at a point of the face; none where it looks along the master.
-    fn sight(&mut self, sides: &Surfaces<'_>, (s, seen): (&Local, &Seen)) -> Option<Sight> {
+    fn sight(&mut self, sides: &Surfaces<'_>, (s, seen): (&Local, &Seen)) -> Option<FacePoint> {
         let face = self.face;
         let corners = sides.slave.vertex_functions(face, s);
         let averaged: Vector<3> = self.corners.iter().zip(&corners).map(|(c, share)| c.vector * *share).sum();
@@ -98,7 +98,7 @@ impl<'a> Variables<'a> {
         let dual = basis.try_inverse()?;
         let moves = own.functions.iter().enumerate().map(|(k, f)| (k, f.value, [0.0; 2]));
         let opposite = other.functions.iter().zip(start..).map(|(f, k)| (k, -f.value, f.slopes.map(|v| -v)));
-        Some(Sight {
+        Some(FacePoint {
             apart: own.x - other.x,
             gap: normal.dot(&(own.x - other.x)),
             normal,
@@ -158,7 +158,7 @@ impl<'a> Variables<'a> {
     }
 }
 
-impl Sight {
+impl FacePoint {
     fn add_to_corners(&self, value: &Vector<3>, row: &mut Row, variables: &Variables<'_>) {
         self.corners.iter().zip(variables.functions.len()..).for_each(|(share, k)| row[k] += value * *share);
     }
@@ -186,7 +186,7 @@ fn row_of<'a>(rows: &'a mut Rows, key: (u32, usize), variables: &Variables<'_>) 
 
 impl Surfaces<'_> {
     /// What the points of a face add.
-    pub fn terms(&self, carried: &Carried<'_>, points: &[CoveredPoint], wanted: Wanted) -> FaceTerms {
+    pub fn terms(&self, carried: &NodeTractions<'_>, points: &[CoveredPoint], wanted: Wanted) -> FaceTerms {
         let contact = carried.contact;
         let Some(first) = points.first() else { return FaceTerms::default() };
         let mut variables = Variables::new(self, first.face);
@@ -232,7 +232,7 @@ impl Surfaces<'_> {
 
     /// How the points of a face that were matched at the last state change the slips of the nodes; with directions that stay
     /// where `is_linear`.
-    pub fn slips(&self, carried: &Carried<'_>, matched: &[Matched], is_linear: bool) -> FaceTerms {
+    pub fn slips(&self, carried: &NodeTractions<'_>, matched: &[Matched], is_linear: bool) -> FaceTerms {
         let Some(first) = matched.first() else { return FaceTerms::default() };
         let contact = carried.contact;
         let mut variables = Variables::new(self, first.face);
@@ -269,11 +269,11 @@ struct Sums {
     /// The first corner, and the number of variables.
     corner: usize,
     n: usize,
-    rubs: bool,
+    has_friction: bool,
 }
 
 impl Sums {
-    fn new(variables: &Variables<'_>, rubs: bool, wants_tangent: bool) -> Self {
+    fn new(variables: &Variables<'_>, has_friction: bool, wants_tangent: bool) -> Self {
         let n = variables.len();
         let zero = Vector::<3>::zeros();
         Sums {
@@ -282,11 +282,11 @@ impl Sums {
             blocks: vec![Matrix::<3>::zeros(); if wants_tangent { n * n } else { 0 }],
             corner: variables.functions.len(),
             n,
-            rubs,
+            has_friction,
         }
     }
 
-    fn add(&mut self, sight: &Sight, traction: &Traction) {
+    fn add(&mut self, sight: &FacePoint, traction: &Traction) {
         let Traction { pressure, friction, .. } = traction;
         let force = friction - sight.normal * *pressure;
         let size = friction.abs() + sight.normal.abs() * pressure.abs();
@@ -295,7 +295,7 @@ impl Sums {
             self.forces[*k] += force * *d;
             self.sizes[*k] += size * d.abs();
         }
-        if self.rubs {
+        if self.has_friction {
             for (share, k) in sight.corners.iter().zip(self.corner..) {
                 self.forces[k] += turned * *share;
                 self.sizes[k] += turned.abs() * *share;
@@ -303,14 +303,19 @@ impl Sums {
         }
         if !self.blocks.is_empty() {
             self.add_to_functions(sight, traction, &force);
-            if self.rubs {
+            if self.has_friction {
                 self.add_to_corners(sight, traction);
             }
         }
     }
 
     /// How the forces on functions change: the point across moves along the master, and the normal turns.
-    fn add_to_functions(&mut self, sight: &Sight, Traction { pressure, turning, .. }: &Traction, force: &Vector<3>) {
+    fn add_to_functions(
+        &mut self,
+        sight: &FacePoint,
+        Traction { pressure, turning, .. }: &Traction,
+        force: &Vector<3>,
+    ) {
         let turns = &sight.turns;
         let by_normal = turns * *pressure - turning * turns;
         let moved = [force * sight.dual[1].transpose(), force * sight.dual[2].transpose()];
@@ -327,7 +332,7 @@ impl Sums {
     }
 
     /// How the forces on normals at vertices change: `g P T` varies with the gap, with `P`, and with the axes of friction.
-    fn add_to_corners(&mut self, sight: &Sight, Traction { friction, turning, .. }: &Traction) {
+    fn add_to_corners(&mut self, sight: &FacePoint, Traction { friction, turning, .. }: &Traction) {
         let (turns, n, gap) = (&sight.turns, &sight.normal, sight.gap);
         let along = turns * friction;
         let opens = along * sight.dual[0].transpose();
@@ -357,13 +362,13 @@ impl Sums {
             }
         }
         let mut out = vec![0.0; size * size];
-        let of_corner = |k: usize| self.rubs || k < self.corner;
+        let of_corner = |k: usize| self.has_friction || k < self.corner;
         for (k, (list, row)) in moves.iter().zip(half.chunks(size)).enumerate().filter(|(k, _)| of_corner(*k)) {
             for (at, v) in list {
                 out[at * size..(at + 1) * size].iter_mut().zip(row).for_each(|(o, h)| *o += v.dot(h));
             }
             let bends = if k < self.corner { &[][..] } else { &variables.corners[k - self.corner].bends[..] };
-            for bend in bends.iter().filter(|_| self.rubs) {
+            for bend in bends.iter().filter(|_| self.has_friction) {
                 let [i, j] = bend.unknowns.map(|u| place(variables.first + u));
                 let value = bend.value.dot(&self.forces[k]);
                 out[i * size + j] += value;

@@ -8,7 +8,8 @@ use super::facing::Facing;
 use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapPoint, Given, Moved, PressureNodes, pieces, segments, shares, shares_on_the_way, whole_faces,
+    ContactSurface, GapPoint, MergedNode, Moved, PressureNodes, dual_weights_unmerged, pieces, segments, shares,
+    whole_faces,
 };
 use signorini_geometry::{Point, Vector};
 
@@ -41,18 +42,18 @@ pub(super) struct CoveredPoint {
 
 /// The part of the slave side that sees its master.
 #[derive(Clone)]
-pub(super) struct Cover {
+pub(super) struct FacingPart {
     /// By face.
     pub points: Vec<Vec<CoveredPoint>>,
     /// Integral of the dual function of each node.
     pub weight: Vec<f64>,
     /// Nodes whose function another one took.
-    pub given: Vec<Given>,
+    pub given: Vec<MergedNode>,
 }
 
-impl Cover {
+impl FacingPart {
     fn none(nodes: usize) -> Self {
-        Cover { points: Vec::new(), weight: vec![0.0; nodes], given: Vec::new() }
+        FacingPart { points: Vec::new(), weight: vec![0.0; nodes], given: Vec::new() }
     }
 }
 
@@ -96,25 +97,25 @@ impl Nodes {
         }
     }
 
-    /// All of the slave side; `folded` nodes have no pressure of their own.
-    pub fn whole(&self, slave: &dyn Surface, faces: &Facing, folded: &[bool]) -> Cover {
+    /// All of the slave side; `merged` nodes have no pressure of their own.
+    pub fn whole(&self, slave: &dyn Surface, faces: &Facing, merged: &[bool]) -> FacingPart {
         match (self, slave.faces().0) {
-            (Nodes::Plane(nodes), Faces::Plane(of)) => whole(nodes, of, faces, folded),
-            (Nodes::Space(nodes), Faces::Space(of)) => whole(nodes, of, faces, folded),
-            _ => Cover::none(folded.len()),
+            (Nodes::Plane(nodes), Faces::Plane(of)) => whole(nodes, of, faces, merged),
+            (Nodes::Space(nodes), Faces::Space(of)) => whole(nodes, of, faces, merged),
+            _ => FacingPart::none(merged.len()),
         }
     }
 
     /// What of the slave side sees the master.
-    pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: &Search, folded: &[bool]) -> Cover {
+    pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: &Search, merged: &[bool]) -> FacingPart {
         match (self, slave.faces().0, master.faces().0) {
             (Nodes::Plane(nodes), Faces::Plane(a), Faces::Plane(b)) => {
-                cut(nodes, [a, b], [slave, master], search, folded)
+                cut(nodes, [a, b], [slave, master], search, merged)
             }
             (Nodes::Space(nodes), Faces::Space(a), Faces::Space(b)) => {
-                cut(nodes, [a, b], [slave, master], search, folded)
+                cut(nodes, [a, b], [slave, master], search, merged)
             }
-            _ => Cover::none(folded.len()),
+            _ => FacingPart::none(merged.len()),
         }
     }
 }
@@ -133,11 +134,11 @@ fn whole<const D: usize>(
     nodes: &PressureNodes<D>,
     faces: &dyn ContactSurface<D>,
     facing: &Facing,
-    folded: &[bool],
-) -> Cover {
+    merged: &[bool],
+) -> FacingPart {
     let mut points = whole_faces(faces);
     points.iter_mut().enumerate().filter(|(face, _)| !facing.slave(*face)).for_each(|(_, list)| list.clear());
-    cover(nodes, faces, points, (folded, false))
+    cover(nodes, faces, points, (merged, false))
 }
 
 fn cut<const D: usize>(
@@ -145,8 +146,8 @@ fn cut<const D: usize>(
     [slave, master]: [&dyn ContactSurface<D>; 2],
     placed: [&dyn Surface; 2],
     search: &Search,
-    folded: &[bool],
-) -> Cover {
+    merged: &[bool],
+) -> FacingPart {
     let nodes = nodes.with_normals(&|face, s| {
         let normal = placed[0].normal(face, s);
         Point::<D>::from_fn(|k, _| normal[k])
@@ -154,7 +155,7 @@ fn cut<const D: usize>(
     let sees = |face: usize, other: usize| search.facing.slave(face) && search.facing.master(other);
     if search.at_rest {
         let points = segments(slave, master, &nodes, search.reach, &sees);
-        return cover(&nodes, slave, points, (folded, true));
+        return cover(&nodes, slave, points, (merged, true));
     }
     let moved = Moved::new(slave, placed[0].faces().1);
     let other = Moved::new(master, placed[1].faces().1);
@@ -168,17 +169,17 @@ fn cut<const D: usize>(
             point.weight *= area(slave) / area(&moved);
         }
     }
-    cover(&nodes, slave, points, (folded, false))
+    cover(&nodes, slave, points, (merged, false))
 }
 
 fn cover<const D: usize>(
     nodes: &PressureNodes<D>,
     slave: &dyn ContactSurface<D>,
     points: Vec<Vec<GapPoint<D>>>,
-    (folded, at_rest): (&[bool], bool),
-) -> Cover {
-    let found = if at_rest { shares } else { shares_on_the_way };
-    let shares = found(slave, nodes, &points, &|k| folded[k as usize]);
+    (merged, at_rest): (&[bool], bool),
+) -> FacingPart {
+    let found = if at_rest { shares } else { dual_weights_unmerged };
+    let shares = found(slave, nodes, &points, &|k| merged[k as usize]);
     let of_face = |(face, (list, shares)): (usize, (Vec<GapPoint<D>>, Vec<Vec<(u32, f64)>>))| {
         let list = list.into_iter().zip(shares);
         let seen = |p: &GapPoint<D>| {
@@ -189,5 +190,5 @@ fn cover<const D: usize>(
         list.map(of).collect()
     };
     let points = points.into_iter().zip(shares.of_point).enumerate().map(of_face).collect();
-    Cover { points, weight: shares.weight, given: shares.given }
+    FacingPart { points, weight: shares.weight, given: shares.given }
 }

@@ -5,7 +5,7 @@ use crate::part::Part;
 use crate::points::Master;
 use crate::surface::{Faces, Surface};
 use rayon::prelude::*;
-use signorini_contact::{ContactSurface, looks_at};
+use signorini_contact::{ContactSurface, is_facing};
 use signorini_geometry::{Point, Vector};
 
 /// The faces of both sides that may touch; all of a side where nothing else is said.
@@ -61,7 +61,7 @@ fn looking(surface: &dyn Surface, (other, size): (&dyn Master, f64)) -> Option<V
     other.prepare();
     let looks = |(x, normal): &(Point<3>, Vector<3>)| {
         let gap = other.nearest(x, f64::INFINITY, None).and_then(|met| met.gap(x));
-        gap.is_some_and(|(gap, outward)| gap > -INTERFERENCE * size && looks_at(normal, &outward))
+        gap.is_some_and(|(gap, outward)| gap > -INTERFERENCE * size && is_facing(normal, &outward))
     };
     let list: Vec<bool> = centres(surface).par_iter().map(looks).collect();
     list.contains(&true).then_some(list)

@@ -5,16 +5,19 @@ use super::measure::{Facing, Matched, Measured, MetPoint, NodeMeasure, Opposite,
 use super::rigid;
 use super::shown::{shared_of, show, zone_of};
 use super::small::{AtRest, SmallSliding};
-use super::terms::{Assembly, Carried, FaceTerms, Wanted};
+use super::terms::{Assembly, FaceTerms, NodeTractions, Wanted};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::enforcement::{Outer, WAVE};
 use crate::inside::Inside;
-use crate::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, Way, hardened, take_over, towards};
+use crate::interaction::{
+    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, StatePath, hardened, take_over,
+    towards,
+};
 use crate::pair::{AxisChoice, any_tangent};
 use crate::part::Part;
-use crate::passage::{Tested, share_of_way};
-use crate::points::{MaterialPoint, Placed};
+use crate::passage::{TrackedPoint, share_of_way};
+use crate::points::{MaterialPoint, SlavePoint};
 use crate::shown_surface::ShownSurface;
 use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
@@ -66,7 +69,7 @@ impl Mortar {
     }
 
     /// The nodes where they are in a state.
-    fn placed(&self, at: Bodies<'_>) -> Result<Vec<Placed>, PlaceError> {
+    fn placed(&self, at: Bodies<'_>) -> Result<Vec<SlavePoint>, PlaceError> {
         let (body, state) = at.side(&self.slave);
         let surface = body.surface(self.slave.group.as_deref(), state);
         let surface = surface.ok_or_else(|| super::no_surface(body, &self.slave))?;
@@ -116,7 +119,13 @@ impl Mortar {
     }
 
     /// Forces of all faces, with their derivatives.
-    fn add_faces(&self, found: &Found<'_>, assembly: &Assembly<'_>, carried: &Carried<'_>, out: &mut Target<'_>) {
+    fn add_faces(
+        &self,
+        found: &Found<'_>,
+        assembly: &Assembly<'_>,
+        carried: &NodeTractions<'_>,
+        out: &mut Assembler<'_>,
+    ) {
         let wanted = if out.tangent.is_some() { Wanted::Tangent } else { Wanted::Forces };
         let measured = found.measured.as_ref();
         let mut add = |list: Vec<FaceTerms>| list.iter().for_each(|terms| assembly.add(terms, out));
@@ -177,23 +186,23 @@ impl Interaction for Mortar {
         list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()
     }
 
-    fn remembered(&self) -> Vec<f64> {
+    fn previous_multipliers(&self) -> Vec<f64> {
         self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
     }
 
-    fn doubt(&self, _: Bodies<'_>) -> Option<String> {
+    fn ill_conditioning(&self, _: Bodies<'_>) -> Option<String> {
         let told = || format!("no part of the slave of contact `{}` faces the master", self.name);
         self.search.facing.is_away.then(told)
     }
 
     fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
-        let found = self.found(at, &self.remembered()).ok()?;
+        let found = self.found(at, &self.previous_multipliers()).ok()?;
         self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
     }
 
     /// A body that only contact holds is pressed on it first where the gap is least.
-    fn guess(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
-        let mut out = self.remembered();
+    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
+        let mut out = self.previous_multipliers();
         let Ok(found) = self.found(at, &out) else { return out };
         let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
         let near = NEAREST * at.bodies[self.slave.body].size();
@@ -233,13 +242,18 @@ impl Interaction for Mortar {
             let normal = sides.slave.normal(*face, s).normalize();
             let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
             let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
-            self.folded[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
+            self.merged[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
         }
-        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.search.facing, &self.folded).weight;
+        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.search.facing, &self.merged).weight;
         self.weights = super::weights(&self.whole);
     }
 
-    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError> {
         let found = self.found(at, own.multipliers)?;
         let assembly = Assembly { contact: self, own, measures: &found.measures, projected: &found.projected };
         assembly.add_nodes(out);
@@ -251,11 +265,11 @@ impl Interaction for Mortar {
         Ok(found.measured.lost)
     }
 
-    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         Ok(self.node_results(&self.found(at, own.multipliers)?))
     }
 
-    fn surface(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+    fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         let found = self.found(at, own.multipliers)?;
         let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
         let points = found.measured.as_ref();
@@ -265,23 +279,30 @@ impl Interaction for Mortar {
     }
 
     /// Solids see each other only where they face each other: what a step takes through a rigid body is followed.
-    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        if !way.from.bodies[self.master.body].is_rigid() || !(way.moves(self.slave.body) || way.moves(self.master.body))
+    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
+        if !path.from.bodies[self.master.body].is_rigid()
+            || !(path.moves(self.slave.body) || path.moves(self.master.body))
         {
             return Ok(1.0);
         }
-        let body = &way.from.bodies[self.slave.body];
+        let body = &path.from.bodies[self.slave.body];
         let spacing = body.size() / (self.places.len() as f64).sqrt();
-        let [from, to] = [self.placed(way.from)?, self.placed(way.to)?];
-        let point = |(a, b): (&Placed, &Placed)| Tested { from: a.x, to: b.x, radius: 0.0, is_surface: true, spacing };
-        Ok(share_of_way([&self.slave, &self.master], from.iter().zip(&to).map(point).collect(), way))
+        let [from, to] = [self.placed(path.from)?, self.placed(path.to)?];
+        let point = |(a, b): (&SlavePoint, &SlavePoint)| TrackedPoint {
+            from: a.x,
+            to: b.x,
+            radius: 0.0,
+            is_surface: true,
+            spacing,
+        };
+        Ok(share_of_way([&self.slave, &self.master], from.iter().zip(&to).map(point).collect(), path))
     }
 
     fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
         at.inside([&self.slave, &self.master], &self.placed(at)?, is_start)
     }
 
-    fn accept(&mut self, at: Bodies<'_>, own: Own<'_>) -> Result<(), PlaceError> {
+    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         let found = self.found(at, own.multipliers)?;
         let mut memory = Vec::with_capacity(self.memory.len());
         for (k, (measure, projected)) in found.measures.iter().zip(&found.projected).enumerate() {
@@ -340,9 +361,9 @@ impl Interaction for Mortar {
     fn augment(
         &mut self,
         at: Bodies<'_>,
-        own: Own<'_>,
+        own: InteractionUnknowns<'_>,
         found: &[SiteResult],
-        around: Around,
+        around: OuterIteration,
     ) -> Result<f64, PlaceError> {
         match self.enforcement.outer() {
             Outer::TakesOver => {
@@ -369,7 +390,7 @@ impl Interaction for Mortar {
         self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
     }
 
-    fn restate(&mut self) {
+    fn restore_law(&mut self) {
         if let Some(stated) = self.set_aside.take() {
             stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
         }

@@ -3,7 +3,7 @@
 use super::Mortar;
 use super::across::Surfaces;
 use super::axes::Axes;
-use super::cover::{Cover, CoveredPoint};
+use super::cover::{CoveredPoint, FacingPart};
 use super::rigid::OnRigid;
 use crate::body::PlaceError;
 use crate::interaction::Bodies;
@@ -65,7 +65,7 @@ pub(super) struct Apart {
 
 /// All points in a state.
 pub(super) struct Measured {
-    pub cover: Cover,
+    pub cover: FacingPart,
     /// What each point meets, face by face.
     pub met: Vec<Vec<Option<MetPoint>>>,
     /// How far each matched point is apart; none without friction.
@@ -126,12 +126,12 @@ impl<'a> Sides<'a> {
     }
 
     /// What sees the master now.
-    fn cover(&self, contact: &Mortar) -> Cover {
+    fn cover(&self, contact: &Mortar) -> FacingPart {
         match &self.master {
             Opposite::Surface(master) => {
-                contact.nodes.cut(self.slave.as_ref(), master.as_ref(), &contact.search, &contact.folded)
+                contact.nodes.cut(self.slave.as_ref(), master.as_ref(), &contact.search, &contact.merged)
             }
-            Opposite::Rigid(_) => contact.nodes.whole(self.slave.as_ref(), &contact.search.facing, &contact.folded),
+            Opposite::Rigid(_) => contact.nodes.whole(self.slave.as_ref(), &contact.search.facing, &contact.merged),
         }
     }
 

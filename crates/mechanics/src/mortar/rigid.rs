@@ -1,9 +1,9 @@
 //! Points of slave faces that meet a rigid body: pairs by its closest points, and what they add to residual and tangent.
 
-use super::cover::{Cover, CoveredPoint};
+use super::cover::{CoveredPoint, FacingPart};
 use super::measure::Matched;
-use super::terms::{Carried, FaceTerms, Line, Traction, Wanted};
-use crate::pair::{AxisChoice, Encounter, NoPair, Pair, Stuck};
+use super::terms::{FaceTerms, Line, NodeTractions, Traction, Wanted};
+use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Master, MaterialPoint, Order};
 use crate::surface::{Local, Surface};
 use rayon::prelude::*;
@@ -38,11 +38,11 @@ impl OnRigid<'_> {
         let stuck = anchored.as_ref().map(|(stuck, anchor)| (stuck, anchor));
         let (first, since, friction) = (self.first, [self.since; 2], self.friction);
         let axis = AxisChoice::Material;
-        Encounter { slave: &slave, met: &met, first, stuck, since, friction, axis }.measure(order)
+        PairGeometry { slave: &slave, met: &met, first, stuck, since, friction, axis }.measure(order)
     }
 
     /// The pairs of all points, and how many could not be measured.
-    pub fn pairs(&self, cover: &Cover) -> (Vec<Vec<Option<Pair>>>, usize) {
+    pub fn pairs(&self, cover: &FacingPart) -> (Vec<Vec<Option<Pair>>>, usize) {
         let of = |point: &CoveredPoint| self.pair((point.face, &point.s), None, Order::First);
         let found: Vec<Vec<Result<Pair, NoPair>>> =
             cover.points.par_iter().map(|list| list.iter().map(of).collect()).collect();
@@ -59,7 +59,7 @@ impl OnRigid<'_> {
     /// What the points of a face add.
     pub fn terms(
         &self,
-        carried: &Carried<'_>,
+        carried: &NodeTractions<'_>,
         (points, pairs): (&[CoveredPoint], &[Option<Pair>]),
         wanted: Wanted,
     ) -> FaceTerms {
@@ -115,7 +115,7 @@ impl OnRigid<'_> {
 
 /// How the points of a face that were matched at the last state change the slips of the nodes; with directions that stay where
 /// `is_linear`.
-pub(super) fn slips(carried: &Carried<'_>, list: &[(&Matched, &Pair)], is_linear: bool) -> FaceTerms {
+pub(super) fn slips(carried: &NodeTractions<'_>, list: &[(&Matched, &Pair)], is_linear: bool) -> FaceTerms {
     let contact = carried.contact;
     let over = Over::new(list.iter().map(|(_, pair)| *pair));
     let mut rows = Rows::new();

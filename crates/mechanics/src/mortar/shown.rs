@@ -7,7 +7,7 @@ use crate::shown_surface::SharedSite;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;
 use signorini_contact::{
-    ContactSurface, ContactZone, Given, Law, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
+    ContactSurface, ContactZone, Law, MergedNode, NodeState, Pressed, PressureNodes, Status, connected, recovered, zone,
 };
 
 /// Completes the results of the nodes.
@@ -47,7 +47,7 @@ pub(super) fn shared_of(nodes: &Nodes, faces: Faces<'_>, points: &Measured, resu
         (Nodes::Space(nodes), Faces::Space(faces)) => recovered(faces, nodes, &points, &multiplier, &active, given),
         _ => return Vec::new(),
     };
-    let shared = |g: &Given| SharedSite {
+    let shared = |g: &MergedNode| SharedSite {
         site: g.from,
         with: g.to,
         pressure: pressure[g.from as usize],

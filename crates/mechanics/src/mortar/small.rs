@@ -4,7 +4,7 @@
 use super::Mortar;
 use super::measure::{Facing, Measured, NodeMeasure, Sides};
 use super::rigid;
-use super::terms::{Carried, FaceTerms, Line, Wanted};
+use super::terms::{FaceTerms, Line, NodeTractions, Wanted};
 use crate::body::{BodyState, PlaceError};
 use crate::interaction::Bodies;
 use signorini_contact::compress;
@@ -95,7 +95,7 @@ impl Mortar {
         let sides = Sides::new(self, Bodies { states: &states, ..at })?;
         let measured = sides.measured(self);
         let count = self.whole.len();
-        let carried = Carried { contact: self, tractions: vec![[0.0; 3]; count], acts: vec![true; count] };
+        let carried = NodeTractions { contact: self, tractions: vec![[0.0; 3]; count], acts: vec![true; count] };
         let mut faces = Vec::new();
         match sides.facing() {
             Facing::Surfaces(surfaces) => {

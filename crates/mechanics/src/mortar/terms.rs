@@ -2,7 +2,7 @@
 
 use super::Mortar;
 use super::measure::NodeMeasure;
-use crate::interaction::{Own, Target};
+use crate::interaction::{Assembler, InteractionUnknowns};
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};
@@ -47,7 +47,7 @@ pub(super) struct FaceTerms {
 }
 
 /// What the nodes of a contact carry.
-pub(super) struct Carried<'a> {
+pub(super) struct NodeTractions<'a> {
     pub contact: &'a Mortar,
     /// The traction of each node.
     pub tractions: Vec<[f64; 3]>,
@@ -62,7 +62,7 @@ pub(super) struct Traction {
     pub turning: Matrix<3>,
 }
 
-impl Carried<'_> {
+impl NodeTractions<'_> {
     pub fn has_part_in(&self, shares: &[(u32, f64)]) -> bool {
         shares.iter().any(|(node, _)| self.acts[*node as usize])
     }
@@ -90,7 +90,7 @@ impl Carried<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Assembly<'a> {
     pub contact: &'a Mortar,
-    pub own: Own<'a>,
+    pub own: InteractionUnknowns<'a>,
     pub measures: &'a [NodeMeasure],
     pub projected: &'a [Projected],
 }
@@ -114,15 +114,15 @@ impl<'a> Assembly<'a> {
         !self.is_open(node) || self.traction(node) != [0.0; 3]
     }
 
-    pub fn carried(&self) -> Carried<'a> {
+    pub fn carried(&self) -> NodeTractions<'a> {
         let nodes = 0..self.projected.len() as u32;
         let tractions: Vec<[f64; 3]> = nodes.clone().map(|node| self.traction(node)).collect();
         let acts = nodes.map(|node| self.acts(node)).collect();
-        Carried { contact: self.contact, tractions, acts }
+        NodeTractions { contact: self.contact, tractions, acts }
     }
 
     /// The equations of the nodes, without what other unknowns change in them.
-    pub fn add_nodes(&self, out: &mut Target<'_>) {
+    pub fn add_nodes(&self, out: &mut Assembler<'_>) {
         let contact = self.contact;
         for (node, projected) in (0u32..).zip(self.projected) {
             let k = node as usize;
@@ -148,7 +148,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds what a face adds.
-    pub fn add(&self, terms: &FaceTerms, out: &mut Target<'_>) {
+    pub fn add(&self, terms: &FaceTerms, out: &mut Assembler<'_>) {
         terms.forces.iter().for_each(|(unknown, force)| out.residual[*unknown as usize] += force);
         terms.sizes.iter().for_each(|(unknown, size)| out.sizes[*unknown as usize] += size);
         if let Some(tangent) = &mut out.tangent {
@@ -161,7 +161,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds what follows from rows and columns that do not change.
-    pub fn add_linear(&self, terms: &FaceTerms, carried: &Carried<'_>, out: &mut Target<'_>) {
+    pub fn add_linear(&self, terms: &FaceTerms, carried: &NodeTractions<'_>, out: &mut Assembler<'_>) {
         for line in &terms.pushes {
             let traction = carried.tractions[line.node as usize][line.slot];
             for (unknown, value) in line.entries.iter().filter(|_| traction != 0.0) {

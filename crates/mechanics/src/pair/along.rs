@@ -16,7 +16,7 @@
 //! here, and forces act on the lines themselves. They have neither resultant nor moment. The opening is not the
 //! variation of the gap, so that the tangent is unsymmetric.
 
-use super::measures::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck};
+use super::measures::{Column, NoPair, Pair, PairGeometry, SecondVariation, Stuck};
 use crate::points::{Foot, NormalField, Order};
 use signorini_geometry::{Matrix, Vector};
 
@@ -24,7 +24,7 @@ type V = Vector<3>;
 
 /// A point of a curve and the point from which it lies along the normal.
 pub(super) struct AtAlong<'a> {
-    encounter: &'a Encounter<'a>,
+    encounter: &'a PairGeometry<'a>,
     foot: &'a Foot,
     field: &'a NormalField,
     /// Distance of both points.
@@ -45,7 +45,7 @@ pub(super) struct AtAlong<'a> {
 impl<'a> AtAlong<'a> {
     /// # Errors
     /// A normal along the surface, or a point on its focal set.
-    pub fn new(encounter: &'a Encounter<'a>, foot: &'a Foot, field: &'a NormalField) -> Result<Self, NoPair> {
+    pub fn new(encounter: &'a PairGeometry<'a>, foot: &'a Foot, field: &'a NormalField) -> Result<Self, NoPair> {
         let length = field.vector.norm();
         let normal = field.vector / length;
         let distance = normal.dot(&(encounter.slave.x - foot.jet.x));

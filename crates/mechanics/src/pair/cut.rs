@@ -16,13 +16,13 @@
 //! Forces act along a line through both points, so that they have neither resultant nor moment. The opening is not the
 //! variation of the gap, so that the tangent is unsymmetric.
 
-use super::measures::{Column, Encounter, NoPair, Pair, SecondVariation, Stuck, axis};
+use super::measures::{Column, NoPair, Pair, PairGeometry, SecondVariation, Stuck, axis};
 use crate::points::{Foot, Order};
 use signorini_geometry::{Matrix, Vector};
 
 /// A slave site and the point across from it.
 pub(super) struct AtCut<'a> {
-    encounter: &'a Encounter<'a>,
+    encounter: &'a PairGeometry<'a>,
     foot: &'a Foot,
     gap: f64,
     normal: Vector<3>,
@@ -38,7 +38,7 @@ pub(super) struct AtCut<'a> {
 impl<'a> AtCut<'a> {
     /// # Errors
     /// A slave without an averaged normal, or one along the surface that it meets.
-    pub fn new(encounter: &'a Encounter<'a>, foot: &'a Foot) -> Result<Self, NoPair> {
+    pub fn new(encounter: &'a PairGeometry<'a>, foot: &'a Foot) -> Result<Self, NoPair> {
         let slave = encounter.slave;
         let averaged = slave.averaged.as_ref().ok_or(NoPair::NoCoordinates)?;
         let length = averaged.vector.norm();

@@ -1,6 +1,6 @@
 //! The gap of a pair and its variations.
 
-use super::measures::{Column, Encounter, NoPair, Pair, axis};
+use super::measures::{Column, NoPair, Pair, PairGeometry, axis};
 use crate::points::{Foot, Function, Order, RigidFoot};
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::Vector;
@@ -9,7 +9,7 @@ use signorini_geometry::shape::CurveJet;
 
 /// A slave site and the foot of its distance on a point, a curve or a surface.
 pub(super) struct AtFoot<'a, const N: usize> {
-    pub encounter: &'a Encounter<'a>,
+    pub encounter: &'a PairGeometry<'a>,
     pub foot: &'a Foot,
     pub normal: Vector<3>,
     pub measures: Measures<N>,
@@ -20,7 +20,7 @@ pub(super) struct AtFoot<'a, const N: usize> {
 impl<'a, const N: usize> AtFoot<'a, N> {
     /// # Errors
     /// Why there is no pair.
-    pub fn new(encounter: &'a Encounter<'a>, foot: &'a Foot) -> Result<Self, NoPair> {
+    pub fn new(encounter: &'a PairGeometry<'a>, foot: &'a Foot) -> Result<Self, NoPair> {
         let slave = encounter.slave;
         let d = slave.x - foot.jet.x;
         let along = d.try_normalize(0.0);
@@ -118,7 +118,7 @@ impl<'a, const N: usize> AtFoot<'a, N> {
 
 /// A slave site and the foot of its distance on a rigid body.
 pub(super) struct AtRigid<'a> {
-    pub encounter: &'a Encounter<'a>,
+    pub encounter: &'a PairGeometry<'a>,
     pub foot: &'a RigidFoot,
     pub columns: Vec<Column>,
     arm: Vector<3>,
@@ -127,7 +127,7 @@ pub(super) struct AtRigid<'a> {
 impl<'a> AtRigid<'a> {
     /// # Errors
     /// A slave that faces away.
-    pub fn new(encounter: &'a Encounter<'a>, foot: &'a RigidFoot) -> Result<Self, NoPair> {
+    pub fn new(encounter: &'a PairGeometry<'a>, foot: &'a RigidFoot) -> Result<Self, NoPair> {
         encounter.check_facing(&foot.jet.normal)?;
         let arm = encounter.slave.x - foot.centre;
         // Relative motion seen from the body: δx - δc - θ × r.

@@ -1,6 +1,6 @@
 //! What is measured of a pair, and of what: a slave site and what it meets.
 
-use crate::points::{Anchor, MaterialPoint, Met, Placed};
+use crate::points::{Anchor, MasterProjection, MaterialPoint, SlavePoint};
 use signorini_geometry::Vector;
 
 /// Why two things that are near each other make no pair.
@@ -129,9 +129,9 @@ impl Pair {
 }
 
 /// A slave site with what it meets.
-pub struct Encounter<'a> {
-    pub slave: &'a Placed,
-    pub met: &'a Met,
+pub struct PairGeometry<'a> {
+    pub slave: &'a SlavePoint,
+    pub met: &'a MasterProjection,
     /// First unknown of the slave's body and of the master's body in the system.
     pub first: [u32; 2],
     /// Where slips count from, with what moves it.

@@ -122,19 +122,19 @@ impl Complementarity<'_> {
     fn solve_by(&self, compliance: f64, mean: f64) -> Option<DVector<f64>> {
         // The least forces: from none.
         let mut centre = DVector::zeros(self.q.len());
-        let mut guess = self.known.clone();
+        let mut initial_multipliers = self.known.clone();
         let mut before = f64::INFINITY;
         for _ in 0..MOST_PROXIMAL {
-            let found = match self.proximal(compliance, &centre, |inner| inner.newton(&guess)) {
+            let found = match self.proximal(compliance, &centre, |inner| inner.newton(&initial_multipliers)) {
                 Some(found) => found,
                 None => {
-                    let near = self.soften_first([compliance, mean], &guess)?;
+                    let near = self.soften_first([compliance, mean], &initial_multipliers)?;
                     self.proximal(compliance, &centre, |inner| inner.solve(near))?
                 }
             };
             let change = (&found - &centre).amax();
             centre = found.clone();
-            guess = found;
+            initial_multipliers = found;
             let most = centre.amax();
             if change <= SAME * most || (change <= NEARLY_SAME * most && change >= 0.5 * before) {
                 return Some(centre);

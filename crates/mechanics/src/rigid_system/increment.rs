@@ -99,7 +99,7 @@ impl<'a, 'b> Increment<'a, 'b> {
         let (single, coupled) = self.motion.system.held(&from.bodies, time)?;
         for held in single.iter().chain(&coupled) {
             let (unknown, factor) = held.constraint.terms[0];
-            way = way.max(self.motion.relative(unknown as usize, held.constraint.lack / factor));
+            way = way.max(self.motion.relative(unknown as usize, held.constraint.violation / factor));
         }
         Ok((way / (0.25 * self.motion.farthest())).ceil().clamp(1.0, MOST_LEGS) as usize)
     }

@@ -224,12 +224,13 @@ impl<'a> Motion<'a> {
         from: &SystemState,
         twists: &Twists,
         (time, tau): (f64, f64),
-        guess: &BTreeMap<Id, [f64; 3]>,
+        initial_multipliers: &BTreeMap<Id, [f64; 3]>,
     ) -> Result<Option<Stepped<'a>>, AssemblyError> {
         let n = self.count();
         let mut step = vec![0.0; n];
-        let mut forces = guess.clone();
-        let mut seen: BTreeSet<Id> = guess.iter().filter(|(_, f)| f[0] > 0.0).map(|(id, _)| *id).collect();
+        let mut forces = initial_multipliers.clone();
+        let mut seen: BTreeSet<Id> =
+            initial_multipliers.iter().filter(|(_, f)| f[0] > 0.0).map(|(id, _)| *id).collect();
         let mut start = BTreeMap::new();
         let mut before = f64::INFINITY;
         for iteration in 1..=MOST_ITERATIONS {
@@ -263,7 +264,7 @@ impl<'a> Motion<'a> {
             for held in &single {
                 let (unknown, factor) = held.constraint.terms[0];
                 is_free[unknown as usize] = false;
-                change[unknown as usize] = -held.constraint.lack / factor;
+                change[unknown as usize] = -held.constraint.violation / factor;
             }
             right -= &matrix * &change;
             let free: Vec<usize> = (0..n).filter(|k| is_free[*k]).collect();
@@ -283,7 +284,7 @@ impl<'a> Motion<'a> {
                 (1..b.rows).for_each(|k| q[b.first + k] -= p.axes[b.axes[k - 1]].dot(slip));
             }
             for (b, held) in blocks[points.len()..].iter().zip(&coupled) {
-                q[b.first] += held.constraint.lack;
+                q[b.first] += held.constraint.violation;
             }
             let w = &across * &compliance;
             let w = (&w + w.transpose()) * 0.5;
@@ -325,7 +326,7 @@ impl<'a> Motion<'a> {
         let touches = TOUCHES * self.size;
         let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
         let (single, coupled) = self.system.held(bodies, time)?;
-        let lacks = |h: &Held| h.constraint.lack.abs() > touches;
+        let lacks = |h: &Held| h.constraint.violation.abs() > touches;
         if points.iter().any(|p| p.pair.gap < -touches) || single.iter().chain(&coupled).any(lacks) {
             return Ok(None);
         }

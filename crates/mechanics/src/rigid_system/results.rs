@@ -88,7 +88,7 @@ impl<'a> Motion<'a> {
         let (single, coupled) = self.system.held(bodies, time)?;
         let lacks = |h: &Held| {
             let (unknown, factor) = h.constraint.terms[0];
-            self.relative(unknown as usize, h.constraint.lack / factor) > 1e-12
+            self.relative(unknown as usize, h.constraint.violation / factor) > 1e-12
         };
         Ok(single.iter().chain(&coupled).any(lacks))
     }

@@ -2,8 +2,8 @@
 
 use crate::contact::{Contact, axes};
 use crate::interaction::Bodies;
-use crate::pair::{Encounter, Pair, Stuck};
-use crate::points::{Met, Order};
+use crate::pair::{Pair, PairGeometry, Stuck};
+use crate::points::{MasterProjection, Order};
 use crate::rigid_body::Pose;
 use crate::rotation;
 use crate::system::SystemState;
@@ -119,13 +119,13 @@ pub fn touching<'a>(
             let placed = sides.slave.0.placed(sides.slave.1, site);
             for (place, met) in master.places(&placed.x).into_iter().enumerate() {
                 let id = Id { contact: number, site: k, place };
-                let Met::Rigid(foot) = &met else { continue };
+                let MasterProjection::Rigid(foot) = &met else { continue };
                 if !wanted(id, foot.jet.gap - placed.radius) {
                     continue;
                 }
                 let stuck = Stuck { point: foot.point, ..Stuck::default() };
                 let anchor = master.at(&foot.point);
-                let encounter = Encounter {
+                let encounter = PairGeometry {
                     slave: &placed,
                     met: &met,
                     first: sides.first,

@@ -123,17 +123,17 @@ impl Body for Sheet {
         let list = [[0.3, 0.4], [0.6, 0.55], [0.45, 0.2]];
         Ok(list.iter().map(|xi| Site { patch: 0, xi: *xi, weight: 0.7 }).collect())
     }
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         let jet = self.jet(state, site.xi);
         let normal = jet.u.cross(&jet.v);
-        Placed {
+        SlavePoint {
             x: jet.x,
             outward: (self.coordinates == 2).then_some(normal),
             tangent: Some(jet.u),
             radius: self.radius,
             functions: self.functions(site.xi),
             frame: Matrix::<3>::identity(),
-            ..Placed::default()
+            ..SlavePoint::default()
         }
     }
     fn master<'a>(&'a self, _: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
@@ -159,7 +159,7 @@ struct SheetMaster<'a> {
 }
 
 impl Master for SheetMaster<'_> {
-    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<Met> {
+    fn nearest(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<MasterProjection> {
         let mut xi = [0.5; 2];
         let mut jet = self.sheet.jet(self.state, xi);
         for _ in 0..50 {
@@ -180,7 +180,7 @@ impl Master for SheetMaster<'_> {
         }
         let surface = self.sheet.coordinates == 2;
         ((x - jet.x).norm() <= reach).then(|| {
-            Met::Foot(Box::new(Foot {
+            MasterProjection::Foot(Box::new(Foot {
                 point: MaterialPoint { patch: 0, xi: [xi[0], xi[1], 0.0] },
                 outward: surface.then(|| jet.u.cross(&jet.v).normalize()),
                 jet,

@@ -23,7 +23,7 @@ pub(crate) struct GhostPair {
     pub region: RegionId,
     pub dofs: Vec<u32>,
     pub cells: [usize; 2],
-    lean: Lean,
+    lean: GhostWeight,
     measure: f64,
     pub tension: f64,
 }
@@ -43,14 +43,14 @@ impl GhostPair {
 /// How much two neighbouring cells need each other. A full cell needs no help, a sliver as much as it is held along: the
 /// method of Nitsche leans on no more. The weight is continuous in the cut, also as slivers come and go whose neighbours would
 /// each have them be different, so the slope jump is continuous in the front.
-pub(crate) struct Lean {
+pub(crate) struct GhostWeight {
     /// What the region fills of each cell.
     shares: [f64; 2],
     /// Along which part of a side each cell is held, at most along a whole one.
     held: [f64; 2],
 }
 
-impl Lean {
+impl GhostWeight {
     fn need(&self) -> f64 {
         let [a, b] = self.shares;
         let along = self.along();
@@ -100,7 +100,7 @@ pub(crate) fn ghost_pairs<const D: usize>(
                     Cell::Outside => None,
                 })
                 .unwrap_or_else(|| membrane.cells.bounds_of(lower).center());
-            let lean = Lean {
+            let lean = GhostWeight {
                 shares: neighbours.cells.map(|cell| share(membrane, quadrature, cell, region)),
                 held: neighbours.cells.map(|cell| held.get(&cell).map_or(1.0, |along| along.min(1.0))),
             };

@@ -3,7 +3,7 @@
 use super::event::Event;
 use super::events::{jump, locate, locate_jump};
 use super::increment::Increment;
-use super::known::{Between, Bounded, Known};
+use super::path_point::{Bounded, PathPoint, Trial};
 use super::remark::{Remark, RemarkKind};
 use super::with_zones::WithZones;
 use crate::coexisting::{OtherState, others};
@@ -20,9 +20,9 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
     pub(super) fn find_jump(
         &mut self,
         index: usize,
-        [a, b]: [&Known<Z>; 2],
+        [a, b]: [&PathPoint<Z>; 2],
         progress: &mut dyn Progress,
-    ) -> Option<Known<Z>> {
+    ) -> Option<PathPoint<Z>> {
         let tolerance = self.statement.increments()[index].events?;
         let (statement, engine) = (&*self.statement, &mut self.engine);
         let mut follow = |time: f64, zone: &Z| {
@@ -41,50 +41,50 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
     }
 
     /// Locates the changes of topology within an increment.
-    pub(super) fn find_events(&mut self, index: usize, [a, b]: [&Known<Z>; 2], progress: &mut dyn Progress) {
+    pub(super) fn find_events(&mut self, index: usize, [a, b]: [&PathPoint<Z>; 2], progress: &mut dyn Progress) {
         let changed = a.zone.counts() != b.zone.counts();
         let Some(tolerance) = self.statement.increments()[index].events.filter(|_| changed) else { return };
         let saved = self.engine.save();
         let (statement, engine) = (&*self.statement, &mut self.engine);
         let mut found = Vec::new();
         // Events at the same time ask for the same states.
-        let mut solved: HashMap<u64, Known<Z>> = HashMap::new();
+        let mut solved: HashMap<u64, PathPoint<Z>> = HashMap::new();
         let mut failed = HashSet::new();
         let mut solve = |time: f64, [before, after]: [&Z; 2]| {
             let from = (time.to_bits(), before.counts(), after.counts());
             match solved.get(&time.to_bits()) {
-                Some(state) => return Between::State(state.clone()),
-                None if failed.contains(&from) => return Between::Unknown,
+                Some(state) => return Trial::State(state.clone()),
+                None if failed.contains(&from) => return Trial::Unknown,
                 None => {}
             }
             let membrane = statement.at(time);
             if progress.interrupted() || statement.check(&membrane, time).is_err() {
-                return Between::Unknown;
+                return Trial::Unknown;
             }
             engine.start_from(before.clone());
             let mut bounded = Bounded { inner: progress, solves: 0 };
             let increment = engine.solve(statement, &membrane, (index, time), &mut bounded);
             if progress.interrupted() {
-                return Between::Unknown;
+                return Trial::Unknown;
             }
             // Beside a merger zones with fronts sharper than the grid tell nothing.
             let state = engine.known(time, &increment).filter(|_| increment.resolved);
             if (before.is_empty() || after.is_empty()) && state.as_ref().is_none_or(|s| s.zone.is_empty()) {
                 // A zone too small for the grid is told by the membrane without contact.
                 match engine.reaches_obstacle(&membrane) {
-                    Some(true) if before.is_empty() => return Between::AsLater,
-                    Some(true) => return Between::AsEarlier,
+                    Some(true) if before.is_empty() => return Trial::AsLater,
+                    Some(true) => return Trial::AsEarlier,
                     _ => {}
                 }
             }
             match state {
                 Some(state) => {
                     solved.insert(time.to_bits(), state.clone());
-                    Between::State(state)
+                    Trial::State(state)
                 }
                 None => {
                     failed.insert(from);
-                    Between::Unknown
+                    Trial::Unknown
                 }
             }
         };

@@ -1,8 +1,8 @@
 //! The events between two states that differ little.
 
 use super::event::{Event, EventKind, LocatedBy};
-use super::known::Known;
 use super::parts::{Part, bridges, holes, middle, overlaps, parts, unmatched};
+use super::path_point::PathPoint;
 use crate::obstacle::Side;
 use crate::zone::Zone;
 use signorini_fem::Grid;
@@ -10,8 +10,8 @@ use signorini_geometry::Point;
 
 /// An event somewhere between two states.
 pub fn between<const D: usize, Z: Zone<D>>(
-    a: &Known<Z>,
-    b: &Known<Z>,
+    a: &PathPoint<Z>,
+    b: &PathPoint<Z>,
     kind: EventKind,
     side: Side,
     at: Point<D>,
@@ -34,7 +34,7 @@ pub fn between<const D: usize, Z: Zone<D>>(
 }
 
 /// The changes between two zones that differ little.
-pub fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event<D>> {
+pub fn differences<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &PathPoint<Z>, b: &PathPoint<Z>) -> Vec<Event<D>> {
     let (parts_a, parts_b) = (parts(grid, &a.zone), parts(grid, &b.zone));
     let overlap = overlaps(grid, &a.zone, &b.zone, [parts_a.len(), parts_b.len()]);
     let mut out = Vec::new();

@@ -1,7 +1,7 @@
 //! What is carried from one increment to the next.
 
 use super::increment::Increment;
-use super::known::Known;
+use super::path_point::PathPoint;
 use super::statement::Statement;
 use crate::adhesion::Branch;
 use crate::equilibrium::Equilibrium;
@@ -108,9 +108,9 @@ impl<const D: usize, Z: ByMultigrid<D>> Engine<D, Z> {
     }
 
     /// The state that the last increment converged to.
-    pub fn known(&self, time: f64, increment: &Increment<D>) -> Option<Known<Z>> {
+    pub fn known(&self, time: f64, increment: &Increment<D>) -> Option<PathPoint<Z>> {
         let (zone, ..) = self.previous.as_ref().filter(|_| increment.converged)?;
-        Some(Known {
+        Some(PathPoint {
             time,
             zone: zone.clone(),
             area: increment.area(),

@@ -6,9 +6,9 @@
 
 use super::differences::{between, differences};
 use super::event::{Event, EventKind};
-use super::known::{Between, Known};
 use super::mergers::{self, Merger};
 use super::parts::{for_each_sample, mean};
+use super::path_point::{PathPoint, Trial};
 use crate::zone::{Zone, contact_index};
 use signorini_fem::Grid;
 use signorini_geometry::Point;
@@ -20,10 +20,10 @@ const MOST_HALVINGS: usize = 5;
 /// nothing the events are known to that interval.
 pub fn locate<const D: usize, Z: Zone<D>>(
     grid: &Grid<D>,
-    a: &Known<Z>,
-    b: &Known<Z>,
+    a: &PathPoint<Z>,
+    b: &PathPoint<Z>,
     tolerance: f64,
-    solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
+    solve: &mut dyn FnMut(f64, [&Z; 2]) -> Trial<Z>,
     out: &mut Vec<Event<D>>,
 ) {
     if a.zone.counts() == b.zone.counts() {
@@ -44,21 +44,21 @@ pub fn locate<const D: usize, Z: Zone<D>>(
     }
     let time = 0.5 * (a.time + b.time);
     match solve(time, [&a.zone, &b.zone]) {
-        Between::AsLater => locate(grid, a, &Known { time, ..b.clone() }, tolerance, solve, out),
-        Between::AsEarlier => locate(grid, &Known { time, ..a.clone() }, b, tolerance, solve, out),
-        Between::State(middle) => {
+        Trial::AsLater => locate(grid, a, &PathPoint { time, ..b.clone() }, tolerance, solve, out),
+        Trial::AsEarlier => locate(grid, &PathPoint { time, ..a.clone() }, b, tolerance, solve, out),
+        Trial::State(middle) => {
             locate(grid, a, &middle, tolerance, solve, out);
             locate(grid, &middle, b, tolerance, solve, out);
         }
-        Between::Unknown => {
+        Trial::Unknown => {
             let (mut low, mut high, mut later) = (a.clone(), b.clone(), Vec::new());
             for _ in 0..MOST_HALVINGS {
-                let Between::State(state) = solve(0.5 * (low.time + time), [&low.zone, &high.zone]) else { break };
+                let Trial::State(state) = solve(0.5 * (low.time + time), [&low.zone, &high.zone]) else { break };
                 locate(grid, &low, &state, tolerance, solve, out);
                 low = state;
             }
             for _ in 0..MOST_HALVINGS {
-                let Between::State(state) = solve(0.5 * (time + high.time), [&high.zone, &low.zone]) else { break };
+                let Trial::State(state) = solve(0.5 * (time + high.time), [&high.zone, &low.zone]) else { break };
                 let mut found = Vec::new();
                 locate(grid, &state, &high, tolerance, solve, &mut found);
                 later.splice(0..0, found);
@@ -78,11 +78,11 @@ const MOST_TRIALS: usize = 120;
 ///
 /// The margin of a state vanishes linearly in time as the jump draws near, which tells where to look.
 pub fn locate_jump<Z: Clone>(
-    mut before: Known<Z>,
-    mut after: Known<Z>,
+    mut before: PathPoint<Z>,
+    mut after: PathPoint<Z>,
     tolerance: f64,
-    follow: &mut dyn FnMut(f64, &Z) -> Option<(Known<Z>, bool)>,
-) -> [Known<Z>; 2] {
+    follow: &mut dyn FnMut(f64, &Z) -> Option<(PathPoint<Z>, bool)>,
+) -> [PathPoint<Z>; 2] {
     let mut last: Option<(f64, f64)> = None;
     for trial in 0..MOST_TRIALS {
         let (a, b) = (before.time, after.time);
@@ -110,7 +110,7 @@ pub fn locate_jump<Z: Clone>(
 }
 
 /// The events of one jump.
-pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &Known<Z>, b: &Known<Z>) -> Vec<Event<D>> {
+pub fn jump<const D: usize, Z: Zone<D>>(grid: &Grid<D>, a: &PathPoint<Z>, b: &PathPoint<Z>) -> Vec<Event<D>> {
     let mut events = differences(grid, a, b);
     for event in &mut events {
         event.kind = match event.kind {

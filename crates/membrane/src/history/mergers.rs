@@ -12,8 +12,8 @@
 use super::bridge::Bridge;
 use super::differences::differences;
 use super::event::{Event, EventKind, LocatedBy};
-use super::known::{Between, Known};
 use super::parts::{bridges_closed, mouths_closed};
+use super::path_point::{PathPoint, Trial};
 use crate::zone::Zone;
 use signorini_fem::Grid;
 
@@ -31,25 +31,25 @@ pub enum Merger<const D: usize, Z> {
     /// All events between, located.
     Located(Vec<Event<D>>),
     /// Something else happens as well: a state with other zones than those before and after.
-    Other(Known<Z>),
+    Other(PathPoint<Z>),
     /// These are no mergers, or they follow no law.
     Unknown,
 }
 
 /// The states of one side of the merger, the nearest last.
 struct Trail<Z> {
-    states: Vec<Known<Z>>,
+    states: Vec<PathPoint<Z>>,
     /// No nearer state could be found.
     exhausted: bool,
 }
 
 impl<Z> Trail<Z> {
-    fn nearest(&self) -> &Known<Z> {
+    fn nearest(&self) -> &PathPoint<Z> {
         &self.states[self.states.len() - 1]
     }
 
     /// The last states; none while there are too few.
-    fn last(&self) -> Option<&[Known<Z>]> {
+    fn last(&self) -> Option<&[PathPoint<Z>]> {
         Some(&self.states[self.states.len().checked_sub(TRAIL)?..])
     }
 }
@@ -71,10 +71,10 @@ pub fn at_zero(points: &[(f64, f64)]) -> f64 {
 /// first of two zones.
 pub fn locate<const D: usize, Z: Zone<D>>(
     grid: &Grid<D>,
-    a: &Known<Z>,
-    b: &Known<Z>,
+    a: &PathPoint<Z>,
+    b: &PathPoint<Z>,
     tolerance: f64,
-    solve: &mut dyn FnMut(f64, [&Z; 2]) -> Between<Z>,
+    solve: &mut dyn FnMut(f64, [&Z; 2]) -> Trial<Z>,
 ) -> Merger<D, Z> {
     let found = differences(grid, a, b);
     let all =
@@ -123,11 +123,11 @@ pub fn locate<const D: usize, Z: Zone<D>>(
             break;
         }
         match solve(time, [&trails[near].nearest().zone, &trails[1 - near].nearest().zone]) {
-            Between::State(state) => match counts.iter().position(|c| *c == state.zone.counts()) {
+            Trial::State(state) => match counts.iter().position(|c| *c == state.zone.counts()) {
                 Some(side) => trails[side].states.push(state),
                 None => return Merger::Other(state),
             },
-            Between::AsEarlier | Between::AsLater | Between::Unknown => {
+            Trial::AsEarlier | Trial::AsLater | Trial::Unknown => {
                 failed.push(time);
                 trails[near].exhausted = known.is_some();
                 if failed.len() == MOST_FAILURES {
@@ -174,7 +174,7 @@ fn estimates<const D: usize, Z: Zone<D>>(grid: &Grid<D>, trails: &[Trail<Z>; 2],
     let (apart, joined) = (apart.last()?, joined.last()?);
     let list = bridges(grid, &apart[TRAIL - 1].zone, &joined[TRAIL - 1].zone)?;
     let of_bridge = |bridge: &Bridge<D>| {
-        let measured = |list: &[Known<Z>], measure: &dyn Fn(&Z) -> Option<f64>| {
+        let measured = |list: &[PathPoint<Z>], measure: &dyn Fn(&Z) -> Option<f64>| {
             list.iter().map(|s| Some((measure(&s.zone)?, s.time))).collect::<Option<Vec<_>>>()
         };
         let opened = measured(apart, &|zone| Some(bridge.between(zone)?.length().powi(2)))?;

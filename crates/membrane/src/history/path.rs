@@ -13,7 +13,7 @@ use signorini_solve::{Progress, SolveError};
 const MOST_HALVINGS: i32 = 7;
 
 /// Where a path stands within its step.
-pub struct Follower<const D: usize, Z> {
+pub struct ArcLengthControl<const D: usize, Z> {
     pub step: usize,
     /// The last state; none before the first where the membrane is free.
     state: Option<PathState<D, Z>>,
@@ -40,7 +40,7 @@ pub enum Along<const D: usize, Z> {
     Failed(String),
 }
 
-impl<const D: usize, Z: Zone<D>> Follower<D, Z> {
+impl<const D: usize, Z: Zone<D>> ArcLengthControl<D, Z> {
     /// Begins a step at a state of equilibrium, or at a free membrane.
     pub fn begin(
         statement: &dyn Statement<D>,

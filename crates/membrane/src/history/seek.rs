@@ -23,7 +23,7 @@ const SAME: f64 = 1e-8;
 type Area<'a> = dyn FnMut(f64) -> Option<f64> + 'a;
 
 /// Where a step stands.
-pub struct Seeker {
+pub struct AreaController {
     pub step: usize,
     /// The time that the step takes, and the area of the membrane.
     size: [f64; 2],
@@ -33,7 +33,7 @@ pub struct Seeker {
     pub done: bool,
 }
 
-impl Seeker {
+impl AreaController {
     /// Begins a step at a state with an area of contact, of a membrane with an area.
     pub fn begin(planned: &PlannedIncrement, begin: f64, membrane: f64) -> Self {
         let [from, to] = planned.range;

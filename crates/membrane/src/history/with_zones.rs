@@ -2,12 +2,12 @@
 
 use super::engine::{Engine, Saved};
 use super::event::Event;
-use super::known::Known;
-use super::path::{Along, Follower};
+use super::messages::{Advanced, Found, History, Messages};
+use super::path::{Along, ArcLengthControl};
+use super::path_point::PathPoint;
 use super::remark::{Remark, RemarkKind};
-use super::seek::Seeker;
+use super::seek::AreaController;
 use super::statement::{Control, PlannedIncrement, Statement};
-use super::told::{Advanced, Found, History, Told};
 use crate::multigrid::large::ByMultigrid;
 use crate::quadrature::area;
 use crate::solution::Reason;
@@ -22,10 +22,10 @@ const SMALLEST_INCREMENT: f64 = 1.0 / 32.0;
 pub(crate) struct WithZones<const D: usize, Z> {
     pub(super) statement: Rc<dyn Statement<D>>,
     pub(super) engine: Engine<D, Z>,
-    pub(super) path: Option<Follower<D, Z>>,
-    pub(super) seeker: Option<Seeker>,
+    pub(super) path: Option<ArcLengthControl<D, Z>>,
+    pub(super) seeker: Option<AreaController>,
     /// The state of the last increment, where one is known.
-    pub(super) known: Option<Known<Z>>,
+    pub(super) known: Option<PathPoint<Z>>,
     pub(super) remarks: Vec<Remark>,
     pub(super) events: Vec<Event<D>>,
 }
@@ -38,7 +38,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
     }
 
     /// The state at the beginning of an increment whose events are wanted: that of the one before, or at t = 0.
-    fn known(&mut self, index: usize, last: Option<Known<Z>>, progress: &mut dyn Progress) -> Option<Known<Z>> {
+    fn known(&mut self, index: usize, last: Option<PathPoint<Z>>, progress: &mut dyn Progress) -> Option<PathPoint<Z>> {
         let planned = &self.statement.increments()[index];
         planned.events?;
         if index > 0 || self.engine.is_asked() || planned.time <= 0.0 {
@@ -179,7 +179,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
         &mut self,
         index: usize,
         planned: &PlannedIncrement,
-        known: Option<&Known<Z>>,
+        known: Option<&PathPoint<Z>>,
         progress: &mut dyn Progress,
     ) -> Result<(f64, usize), String> {
         let (statement, engine, mut solves, mut invalid) = (&*self.statement, &mut self.engine, 0, None);
@@ -202,7 +202,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
         };
         let seeker = self.seeker.take().filter(|seeker| seeker.step == planned.step);
         let mut seeker = seeker.unwrap_or_else(|| {
-            Seeker::begin(planned, from[1], area(&statement.at(statement.increments()[0].range[0])))
+            AreaController::begin(planned, from[1], area(&statement.at(statement.increments()[0].range[0])))
         });
         let saved = engine.save();
         let found = seeker.advance(planned, from, &mut |time| {
@@ -218,7 +218,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
 
     /// Leads from a state towards a time at which no state was found, by smaller increments that are cut as they need;
     /// tells the equilibrium solves it took, or none where that does not help either.
-    fn approach(&mut self, index: usize, from: &Known<Z>, time: f64, progress: &mut dyn Progress) -> Option<usize> {
+    fn approach(&mut self, index: usize, from: &PathPoint<Z>, time: f64, progress: &mut dyn Progress) -> Option<usize> {
         let whole = time - from.time;
         let (mut reached, mut size) = (from.clone(), 0.5 * whole);
         let mut solves = 0;
@@ -247,7 +247,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
     fn along(
         &mut self,
         planned: &PlannedIncrement,
-        known: Option<&Known<Z>>,
+        known: Option<&PathPoint<Z>>,
         progress: &mut dyn Progress,
     ) -> Along<D, Z> {
         let lost = |e: SolveError| Along::Failed(e.to_string());
@@ -273,7 +273,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
                 let Some(scales) = scales else {
                     return Along::Failed("there is no initial state".into());
                 };
-                match Follower::begin(&*self.statement, planned, zone, time, scales) {
+                match ArcLengthControl::begin(&*self.statement, planned, zone, time, scales) {
                     Ok(follower) => follower,
                     Err(e) => return lost(e),
                 }
@@ -299,9 +299,9 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> WithZones<D, Z> {
 }
 
 impl<const D: usize, Z: ByMultigrid<D> + 'static> History<D> for WithZones<D, Z> {
-    fn advance(&mut self, index: usize, progress: &mut dyn Progress) -> (Advanced<D>, Told<D>) {
+    fn advance(&mut self, index: usize, progress: &mut dyn Progress) -> (Advanced<D>, Messages<D>) {
         let advanced = self.step(index, progress);
-        let told = Told { remarks: std::mem::take(&mut self.remarks), events: std::mem::take(&mut self.events) };
+        let told = Messages { remarks: std::mem::take(&mut self.remarks), events: std::mem::take(&mut self.events) };
         (advanced, told)
     }
 
@@ -319,7 +319,7 @@ impl<const D: usize, Z: ByMultigrid<D> + 'static> History<D> for WithZones<D, Z>
         let zone = |v: &Value| Z::from_json(self.statement.grid(), v);
         let known = match &state["known"] {
             Value::Null => None,
-            k => Some(Known {
+            k => Some(PathPoint {
                 time: k["time"].as_f64()?,
                 zone: zone(&k["zone"])?,
                 area: k["area"].as_f64()?,

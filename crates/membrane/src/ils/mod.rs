@@ -11,9 +11,9 @@ use crate::equilibrium::elements::Elements;
 use crate::method::Transport;
 use crate::prediction::{FREE, prediction};
 use crate::problem::Membrane;
-pub use crate::rest::Rest;
-use crate::rest::{SETTLED, SHARP};
 pub use crate::solution::{Reason, Solution, Start};
+pub use crate::stopping::StoppingRule;
+use crate::stopping::{SETTLED, SHARP};
 use crate::zone::Zone;
 use signorini_solve::{Iteration, Progress, SolveError};
 
@@ -25,7 +25,7 @@ pub fn solve_here<const D: usize, Z: Zone<D>>(
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
-    solve(membrane, &mut Elements::new(membrane), start.on(membrane), Rest::Uncorrected, at, progress)
+    solve(membrane, &mut Elements::new(membrane), start.on(membrane), StoppingRule::Uncorrected, at, progress)
 }
 
 /// Solves one increment.
@@ -33,7 +33,7 @@ pub fn solve<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     elements: &mut Elements<D>,
     start: Start<Z>,
-    rest: Rest,
+    rest: StoppingRule,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -46,7 +46,7 @@ pub(crate) fn solve_from<const D: usize, Z: Zone<D>>(
     elements: &mut Elements<D>,
     start: Start<Z>,
     known: Option<Equilibrium<D>>,
-    rest: Rest,
+    rest: StoppingRule,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -70,7 +70,7 @@ pub(crate) fn solve_from<const D: usize, Z: Zone<D>>(
 pub(crate) fn resume<const D: usize, Z: Zone<D>>(
     membrane: &Membrane<D>,
     mut found: Solution<D, Z>,
-    rest: Rest,
+    rest: StoppingRule,
     at: (usize, f64),
     progress: &mut dyn Progress,
 ) -> Solution<D, Z> {
@@ -95,7 +95,7 @@ pub(crate) fn resume<const D: usize, Z: Zone<D>>(
 struct Run<'a, 'b, const D: usize, Z> {
     membrane: &'a Membrane<D>,
     elements: &'b mut Elements<D>,
-    rest: Rest,
+    rest: StoppingRule,
     at: (usize, f64),
     progress: &'b mut dyn Progress,
     branch: Branch,
@@ -116,19 +116,20 @@ enum Fixed {
 impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     fn from(&mut self, start: Start<Z>) -> Result<Reason, SolveError> {
         if self.membrane.obstacles.is_empty() {
-            self.settle_fronts()?;
+            self.solve_front_equation()?;
             return Ok(Reason::NoContact);
         }
         match start {
             Start::Zone(zone, scales, branch) if !zone.is_empty() => {
-                self.solution.zone = if self.rest == Rest::Uncorrected { zone } else { zone.on_cells(self.membrane) };
+                self.solution.zone =
+                    if self.rest == StoppingRule::Uncorrected { zone } else { zone.on_cells(self.membrane) };
                 self.solution.scales = Some(scales);
                 self.branch = branch;
             }
             Start::Free | Start::Zone(..) => {}
             Start::Asked(zone, branch) => {
                 // Without contact, for the scales.
-                self.settle_fronts()?;
+                self.solve_front_equation()?;
                 self.solution.zone = zone.on_cells(self.membrane);
                 self.branch = branch;
             }
@@ -159,7 +160,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// where that is smaller than the grid can tell. Adhesion acts at no distance: a membrane that stays clear of all
     /// bodies is free.
     fn nucleate(&mut self) -> Result<Option<Reason>, SolveError> {
-        if let Fixed::Interrupted = self.settle_fronts()? {
+        if let Fixed::Interrupted = self.solve_front_equation()? {
             return Ok(Some(Reason::Interrupted));
         }
         let solution = &mut self.solution;
@@ -190,7 +191,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
         let mut sweeps = 0;
         let mut seen: Vec<((usize, usize), f64)> = Vec::new();
         loop {
-            let settled = self.settle_fronts();
+            let settled = self.solve_front_equation();
             if let Ok(Fixed::Interrupted) = settled {
                 return Ok(Reason::Interrupted);
             }
@@ -206,8 +207,8 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 continue;
             }
             let [tips, sharp] = [1.0, SHARP].map(|bend| self.has_tips(&self.solution.zone, bend));
-            if (self.rest == Rest::BeforeMoreDivision && self.solution.unfinished)
-                || (self.rest == Rest::BeforeDivision && tips)
+            if (self.rest == StoppingRule::BeforeMoreDivision && self.solution.unfinished)
+                || (self.rest == StoppingRule::BeforeDivision && tips)
             {
                 return Ok(Reason::Converged);
             }
@@ -231,7 +232,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 solution.conditions = Some(conditions);
                 return Ok(Reason::Converged);
             }
-            if self.rest == Rest::Uncorrected {
+            if self.rest == StoppingRule::Uncorrected {
                 let nearly = conditions.nearly_hold_about(&solution.zone, scales, self.membrane);
                 solution.unresolved = nearly.then_some(-conditions.least_gap_outside);
                 solution.conditions = Some(conditions);
@@ -239,7 +240,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             }
             // Corrected and settled again it would come back to itself: the grid cannot tell whether zones touch.
             let state = (solution.zone.counts(), conditions.least_gap_outside);
-            let left = self.rest == Rest::BeforeDivision && !self.adhering;
+            let left = self.rest == StoppingRule::BeforeDivision && !self.adhering;
             let again = |(counts, gap): &((usize, usize), f64)| {
                 *counts == state.0 && ((left && !first) || (gap / state.1 - 1.0).abs() < 0.1)
             };

@@ -6,8 +6,8 @@ use crate::conditions::pushes;
 use crate::equilibrium::Equilibrium;
 use crate::front::{Fronts, Step, StepKind};
 use crate::published::schedule::ModeSchedule;
-use crate::rest::{Course, SHARP, Sight, Verdict};
 use crate::scales::Scales;
+use crate::stopping::{Decision, IterationHistory, Observation, SHARP};
 use crate::zone::{Advance, Zone, contact_index};
 use signorini_geometry::Point;
 use signorini_solve::{Acceleration, SolveError};
@@ -43,11 +43,11 @@ const MOST_SMOOTHINGS: u32 = 4;
 
 impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
     /// Newton's iteration on the shape of the zone.
-    pub(super) fn settle_fronts(&mut self) -> Result<Fixed, SolveError> {
+    pub(super) fn solve_front_equation(&mut self) -> Result<Fixed, SolveError> {
         let finest = self.membrane.modes.finest();
         let mut acceleration = Acceleration::default();
         let mut schedule = ModeSchedule::default();
-        let mut course = Course::default();
+        let mut course = IterationHistory::default();
         self.solution.settled_within = None;
         self.solution.unfinished = false;
         self.solution.lowest_eigenvalue = None;
@@ -85,7 +85,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             let fewer = fewer.or_else(|| Some((self.without_pressed_holes(zone)?, "hole closed")));
             if let Some((zone, what)) = fewer {
                 self.report(0.0, what);
-                course = Course::default();
+                course = IterationHistory::default();
                 acceleration = Acceleration::default();
                 self.solution.equilibrium = Some(equilibrium);
                 self.solution.zone = zone;
@@ -98,7 +98,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             {
                 let zone = zone.without(&self.membrane.grid, part);
                 self.report(0.0, "zone lost");
-                (count, descents, course) = (0, descents + 1, Course::default());
+                (count, descents, course) = (0, descents + 1, IterationHistory::default());
                 self.solution.jumped = true;
                 self.solution.equilibrium = Some(equilibrium);
                 self.solution.zone = zone;
@@ -115,7 +115,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             };
             course.take(residual, area.iter().sum::<f64>() / scales.length.powi(D as i32), step.kind, shifted);
             let bend = if D > 1 { zone.bend() } else { 0.0 };
-            let sight = Sight {
+            let sight = Observation {
                 residual,
                 step: step.length,
                 kind: step.kind,
@@ -133,7 +133,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                 farthest: &|| fronts.farthest(zone, &scales, |_| h),
             };
             let verdict = self.rest.judge(&course, &sight);
-            if verdict != Verdict::Moving {
+            if verdict != Decision::Moving {
                 if let Some(linearised) = &linearised {
                     let spectrum = linearised.spectrum();
                     let lowest = spectrum.as_ref().and_then(|s| s.values.first().copied());
@@ -141,10 +141,10 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                         && lowest < UNSTABLE * linearised.scale
                         && descents < MOST_DESCENTS
                     {
-                        let kick = linearised.kick(spectrum, h);
-                        let advance = zone.advanced(&self.membrane.grid, finest, &kick, h);
+                        let perturbation = linearised.perturbation(spectrum, h);
+                        let advance = zone.advanced(&self.membrane.grid, finest, &perturbation, h);
                         self.report(residual, "at rest, but unstable");
-                        (count, descents, course) = (0, descents + 10, Course::default());
+                        (count, descents, course) = (0, descents + 10, IterationHistory::default());
                         self.solution.jumped = true;
                         self.solution.equilibrium = Some(equilibrium);
                         self.solution.zone = advance.zone;
@@ -152,16 +152,16 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
                     }
                     self.solution.lowest_eigenvalue = lowest;
                 }
-                let settled = verdict != Verdict::AtRest;
+                let settled = verdict != Decision::AtRest;
                 self.report(residual, if settled { "settled" } else { "at rest" });
                 self.solution.settled_within = settled.then_some(step.length);
-                self.solution.unfinished = matches!(verdict, Verdict::Left { .. });
-                self.solution.near_enough = verdict == Verdict::Left { settled: true };
+                self.solution.unfinished = matches!(verdict, Decision::Left { .. });
+                self.solution.near_enough = verdict == Decision::Left { settled: true };
                 self.solution.equilibrium = Some(equilibrium);
                 return Ok(Fixed::AtRest);
             }
             if step.kind == StepKind::Descent {
-                (count, descents, course) = (0, descents + 1, Course::default());
+                (count, descents, course) = (0, descents + 1, IterationHistory::default());
                 self.solution.jumped = true;
             }
             // Short of adhesion fronts rest without a slope: the pressure of the floor is nearly all of the derivative in the
@@ -215,7 +215,7 @@ impl<const D: usize, Z: Zone<D>> Run<'_, '_, D, Z> {
             if advance.topology_changed {
                 // Another problem: what the residuals were before says nothing of it.
                 changes += 1;
-                course = Course::default();
+                course = IterationHistory::default();
             }
             let action = if advance.topology_changed { "topology changed" } else { step.kind.name() };
             let zone = if advance.topology_changed { self.resized(advance.zone) } else { advance.zone };

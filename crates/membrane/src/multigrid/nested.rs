@@ -11,9 +11,9 @@ use crate::front::{Fronts, StepKind};
 use crate::ils;
 use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
-use crate::rest::{Rest, SETTLED, SETTLED_COARSE};
 use crate::scales::Scales;
 use crate::solution::{Reason, Solution, Start};
+use crate::stopping::{SETTLED, SETTLED_COARSE, StoppingRule};
 use crate::zone::{Zone, ZoneFronts, ZoneMotion, ZoneSizes};
 use signorini_solve::{Acceleration, Iteration, Progress, SolveError};
 
@@ -140,7 +140,7 @@ pub fn solve<R: Regular>(
     let first = grounds.iter().position(many).unwrap_or(0);
     let Some(coarse) = grounds.get(first) else { return Ok(Err(Reason::IterationLimit)) };
     let coarse = coarse.membrane(membrane);
-    let rest = if first + 1 < grounds.len() { Rest::BeforeRefinement } else { Rest::Final };
+    let rest = if first + 1 < grounds.len() { StoppingRule::BeforeRefinement } else { StoppingRule::Final };
     let found = ils::solve::<2, PlaneZone>(&coarse, &mut Elements::new(&coarse), Start::Free, rest, at, progress);
     let (true, Some(scales), Some(state)) = (found.reason.converged(), found.scales, &found.equilibrium) else {
         return Ok(Err(found.reason));

@@ -7,7 +7,7 @@ use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::{Elements, Equilibrium};
 use signorini_membrane::field::{Constant, Formula, SharedField};
 use signorini_membrane::front::{Fronts, Step, StepKind};
-use signorini_membrane::ils::{Reason, Rest, Start, solve};
+use signorini_membrane::ils::{Reason, Start, StoppingRule, solve};
 use signorini_membrane::method::ModeSpace;
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
@@ -161,7 +161,7 @@ fn the_change_of_the_discrete_slope_jump_is_predicted() {
 
 /// The solution with a front that is off by a thousandth of a cell in all waves, and its scales.
 fn beside_the_solution(membrane: &Membrane<2>, elements: &mut Elements<2>) -> (PlaneZone, Scales) {
-    let solution = solve::<2, PlaneZone>(membrane, elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
+    let solution = solve::<2, PlaneZone>(membrane, elements, Start::Free, StoppingRule::Final, (0, 0.0), &mut Silent);
     assert_eq!(solution.reason, Reason::Converged);
     let n = solution.zone.mode_offsets(ModeSpace::Fine)[1];
     let off: Vec<f64> = (0..n).map(|i| 1e-3 * membrane.grid.h() * (1.0 + (0.9 * i as f64).sin())).collect();
@@ -364,7 +364,7 @@ fn stability_is_the_second_change_of_the_energy() {
     let membrane = sticky(20, 4, Side::Below);
     let mut elements = Elements::new(&membrane);
     let start: Start<PlaneZone> = Start::Asked(zone_of(&membrane, 0.6), Branch::Nearest);
-    let solution = solve(&membrane, &mut elements, start, Rest::Final, (0, 0.0), &mut Silent);
+    let solution = solve(&membrane, &mut elements, start, StoppingRule::Final, (0, 0.0), &mut Silent);
     assert_eq!(solution.reason, Reason::Converged);
     let energy = |zone: &PlaneZone| {
         let state = Equilibrium::solve(&membrane, zone, &mut Elements::new(&membrane)).expect("an equilibrium");

@@ -5,7 +5,7 @@ use crate::cycles::{beside_the_direct_solver, circle, contraction};
 use signorini_geometry::{ClosedCurve, Jet, Point, Real};
 use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::Formula;
-use signorini_membrane::ils::{self, Reason, Rest, Start};
+use signorini_membrane::ils::{self, Reason, Start, StoppingRule};
 use signorini_membrane::multigrid::{OnMesh, nested};
 use signorini_membrane::obstacle::{Obstacle, Side};
 use signorini_membrane::plane_zone::PlaneZone;
@@ -127,8 +127,14 @@ fn multigrid_and_the_direct_solver_agree() {
         let found = found.unwrap_or_else(|| panic!("{name}: no state"));
         assert!(found.multigrid);
         let mut elements = Elements::new(&membrane);
-        let direct =
-            ils::solve::<2, PlaneZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 0.0), &mut Silent);
+        let direct = ils::solve::<2, PlaneZone>(
+            &membrane,
+            &mut elements,
+            Start::Free,
+            StoppingRule::Final,
+            (0, 0.0),
+            &mut Silent,
+        );
         assert_eq!(direct.reason, Reason::Converged, "{name}");
         assert_eq!(found.zone.counts(), direct.zone.counts(), "{name}");
         let [a, b] = [&found, &direct].map(|s| Report::new(s).expect("a report"));

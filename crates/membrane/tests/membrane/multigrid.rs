@@ -6,7 +6,7 @@ use signorini_geometry::{Aabb, ClosedCurve, Ellipsoid, Jet, Point, Real};
 use signorini_membrane::domain::{BoxDomain, Domain, DomainOnCells, ImplicitDomain, PolygonDomain};
 use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::{Constant, Formula};
-use signorini_membrane::ils::{self, Reason, Rest, Start};
+use signorini_membrane::ils::{self, Reason, Start, StoppingRule};
 use signorini_membrane::multigrid::{Hierarchy, OnGrid, nested};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
@@ -292,7 +292,7 @@ fn multigrid_and_the_direct_solver_agree() {
             &membrane,
             &mut Elements::new(&membrane),
             Start::Free,
-            Rest::Final,
+            StoppingRule::Final,
             (0, 0.0),
             &mut Silent,
         );

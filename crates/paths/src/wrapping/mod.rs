@@ -21,7 +21,7 @@ pub use tensions::{PathTensions, Sideways};
 use crate::PathError;
 use newton::{Chain, Workspace, newton};
 use route::Leg;
-use touch::Touch;
+use touch::WrapPoint;
 
 /// A path that follows its bodies: every answer is the start of the next search.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub struct Wrapping {
 #[derive(Clone, Debug)]
 struct Known {
     stations: Vec<usize>,
-    touches: Vec<Touch>,
+    touches: Vec<WrapPoint>,
 }
 
 impl Known {
@@ -143,7 +143,7 @@ const CHANGES: usize = 6;
 fn settle(
     leg: &Leg,
     bodies: &[Body<'_>],
-    mut touches: Vec<Touch>,
+    mut touches: Vec<WrapPoint>,
     work: &mut Workspace,
 ) -> Result<(Chain, usize), PathError> {
     let mut iterations = 0;

@@ -6,7 +6,7 @@
 //! on the body, the touch starts or ends in it.
 
 use super::route::{Body, Leg};
-use super::touch::{Shot, Touch, Variation};
+use super::touch::{Shot, Variation, WrapPoint};
 use crate::banded::Banded;
 use signorini_geometry::{Point, Vector};
 
@@ -43,7 +43,7 @@ impl Line {
 /// A chain with what Newton needs of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
-    pub touches: Vec<Touch>,
+    pub touches: Vec<WrapPoint>,
     pub shots: Vec<Shot>,
     pub residual: f64,
 }
@@ -56,14 +56,14 @@ pub(crate) struct Workspace {
 }
 
 /// Which ends of a chain lie on their bodies.
-pub(crate) fn pinned(leg: &Leg, touches: &[Touch]) -> [bool; 2] {
-    let same = |touch: Option<&Touch>, pin: Option<usize>| touch.zip(pin).is_some_and(|(t, o)| t.order == o);
+pub(crate) fn pinned(leg: &Leg, touches: &[WrapPoint]) -> [bool; 2] {
+    let same = |touch: Option<&WrapPoint>, pin: Option<usize>| touch.zip(pin).is_some_and(|(t, o)| t.order == o);
     [same(touches.first(), leg.pinned[0]), same(touches.last(), leg.pinned[1])]
 }
 
 impl Chain {
     /// `None` where a geodesic cannot be followed.
-    pub fn new(leg: &Leg, bodies: &[Body<'_>], mut touches: Vec<Touch>) -> Option<Self> {
+    pub fn new(leg: &Leg, bodies: &[Body<'_>], mut touches: Vec<WrapPoint>) -> Option<Self> {
         let shots: Option<Vec<Shot>> =
             touches.iter_mut().map(|t| t.shoot(&bodies[leg.around[t.order].body]).ok()).collect();
         let mut chain = Chain { touches, shots: shots?, residual: 0.0 };
@@ -177,7 +177,7 @@ fn ends(shot: &Shot) -> [Variation; 4] {
 pub(crate) fn newton(
     leg: &Leg,
     bodies: &[Body<'_>],
-    start: Vec<Touch>,
+    start: Vec<WrapPoint>,
     work: &mut Workspace,
 ) -> Result<(Chain, Vec<f64>), Vec<f64>> {
     let mut residuals = Vec::with_capacity(8);
@@ -197,12 +197,12 @@ pub(crate) fn newton(
         }
         work.matrix.solve(&mut work.step);
         work.step.iter_mut().for_each(|v| *v = -*v);
-        let body = |t: &Touch| &bodies[leg.around[t.order].body];
+        let body = |t: &WrapPoint| &bodies[leg.around[t.order].body];
         let pairs = || chain.touches.iter().zip(work.step.chunks_exact(4));
         let mut share = pairs().map(|(t, step)| t.share(body(t), step)).fold(1.0, f64::min);
         let mut best: Option<Chain> = None;
         for _ in 0..HALVINGS {
-            let moved: Option<Vec<Touch>> = pairs().map(|(t, step)| t.moved(body(t), step, share).ok()).collect();
+            let moved: Option<Vec<WrapPoint>> = pairs().map(|(t, step)| t.moved(body(t), step, share).ok()).collect();
             let next = moved.and_then(|touches| Chain::new(leg, bodies, touches));
             if let Some(next) = next {
                 let enough = next.residual <= (1.0 - 0.1 * share) * chain.residual;
@@ -251,10 +251,11 @@ mod tests {
         let leg = route.legs(&bodies).remove(0);
         let x = Vector::<3>::x();
         let touches = vec![
-            Touch::near(0, &bodies[0], &Point::<3>::new(-0.3, 1.2, 0.8), &x, 1.1).unwrap(),
-            Touch::near(1, &bodies[1], &Point::<3>::new(6.0, 3.0, 1.5), &(x + Vector::<3>::y() * 0.3), 0.8).unwrap(),
+            WrapPoint::near(0, &bodies[0], &Point::<3>::new(-0.3, 1.2, 0.8), &x, 1.1).unwrap(),
+            WrapPoint::near(1, &bodies[1], &Point::<3>::new(6.0, 3.0, 1.5), &(x + Vector::<3>::y() * 0.3), 0.8)
+                .unwrap(),
         ];
-        let residual = |touches: &[Touch]| {
+        let residual = |touches: &[WrapPoint]| {
             let chain = Chain::new(&leg, &bodies, touches.to_vec()).unwrap();
             let mut r = vec![0.0; 8];
             chain.equations(&leg, &mut r, None);

@@ -6,7 +6,7 @@
 
 use super::newton::Line;
 use super::route::{Body, Leg};
-use super::touch::Touch;
+use super::touch::WrapPoint;
 use signorini_geometry::{Point, Vector};
 
 /// Springs per body and for the ends, so that some lie on each body of a chain.
@@ -19,7 +19,7 @@ const AT_REST: f64 = 1e-4;
 const BOW: f64 = 1e-3;
 
 /// Touches from a band between the ends of a leg.
-pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<Touch> {
+pub(crate) fn band(leg: &Leg, bodies: &[Body<'_>]) -> Vec<WrapPoint> {
     let (nodes, on) = relaxed(leg, bodies);
     touches(leg, bodies, &nodes, &on)
 }
@@ -95,7 +95,7 @@ fn pushed_out(body: &Body<'_>, x: &Point<3>) -> Option<Point<3>> {
 }
 
 /// Runs of nodes on the same body, in the order of the route.
-fn touches(leg: &Leg, bodies: &[Body<'_>], nodes: &[Point<3>], on: &[Option<usize>]) -> Vec<Touch> {
+fn touches(leg: &Leg, bodies: &[Body<'_>], nodes: &[Point<3>], on: &[Option<usize>]) -> Vec<WrapPoint> {
     let mut runs: Vec<(usize, usize, usize)> = Vec::new();
     for (k, order) in on.iter().enumerate() {
         let Some(order) = *order else { continue };
@@ -112,7 +112,7 @@ fn touches(leg: &Leg, bodies: &[Body<'_>], nodes: &[Point<3>], on: &[Option<usiz
             let direction = if first == last { line.to - line.from } else { nodes[first + 1] - nodes[first] };
             let length: f64 = (first..last).map(|k| (nodes[k + 1] - nodes[k]).norm()).sum();
             let length = if length > 0.0 { length } else { 0.5 * line.length() };
-            Touch::near(order, &bodies[leg.around[order].body], &start, &direction, length).ok()
+            WrapPoint::near(order, &bodies[leg.around[order].body], &start, &direction, length).ok()
         })
         .collect()
 }

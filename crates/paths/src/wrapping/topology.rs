@@ -6,7 +6,7 @@
 
 use super::newton::{Chain, Line};
 use super::route::{Body, Leg};
-use super::touch::Touch;
+use super::touch::WrapPoint;
 use crate::PathError;
 use crate::darboux::Along;
 use crate::geodesic::{GeodesicState, geodesic};
@@ -76,17 +76,17 @@ pub(crate) fn deepest(body: &Body<'_>, line: &Line) -> Option<Deepest> {
 }
 
 /// A touch where a line is deepest in a body, as long as a circle of the same curvature would be touched.
-pub(crate) fn touch_at(order: usize, body: &Body<'_>, line: &Line, deepest: &Deepest) -> Option<Touch> {
+pub(crate) fn touch_at(order: usize, body: &Body<'_>, line: &Line, deepest: &Deepest) -> Option<WrapPoint> {
     let e = line.direction();
     let most = 0.5 * line.length();
     let length = if deepest.k_n < 0.0 { 2.0 * (2.0 * deepest.depth.max(0.0) / -deepest.k_n).sqrt() } else { most };
     let length = length.min(most);
-    Touch::near(order, body, &(deepest.x - e * (0.5 * length)), &e, length).ok()
+    WrapPoint::near(order, body, &(deepest.x - e * (0.5 * length)), &e, length).ok()
 }
 
 /// The touches with one more, where a line enters a body: the deepest of all.
-pub(crate) fn touchdown(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<Vec<Touch>> {
-    let mut worst: Option<(f64, usize, Touch)> = None;
+pub(crate) fn touchdown(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<Vec<WrapPoint>> {
+    let mut worst: Option<(f64, usize, WrapPoint)> = None;
     for k in 0..=chain.touches.len() {
         let line = chain.line(leg, k);
         let length = line.length();
@@ -140,18 +140,19 @@ pub(crate) fn crossing(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<
 }
 
 /// A first touch on the body on which the path starts begins there.
-fn pinned_start(leg: &Leg, bodies: &[Body<'_>], k: usize, count: usize, touch: Touch) -> Touch {
+fn pinned_start(leg: &Leg, bodies: &[Body<'_>], k: usize, count: usize, touch: WrapPoint) -> WrapPoint {
     if k == 0 && leg.pinned[0] == Some(touch.order) {
         let body = &bodies[leg.around[touch.order].body];
         let way = leg.to.1 - leg.from.1;
         let length = if count == 0 && leg.pinned[1] == Some(touch.order) { way.norm() } else { touch.length };
-        return Touch::near(touch.order, body, &leg.from.1, &body.motion.vector(&touch.tau), length).unwrap_or(touch);
+        return WrapPoint::near(touch.order, body, &leg.from.1, &body.motion.vector(&touch.tau), length)
+            .unwrap_or(touch);
     }
     touch
 }
 
 /// The touches without the one of most negative length.
-pub(crate) fn lift_off(chain: &Chain) -> Option<Vec<Touch>> {
+pub(crate) fn lift_off(chain: &Chain) -> Option<Vec<WrapPoint>> {
     let shortest =
         (0..chain.touches.len()).min_by(|&i, &j| chain.touches[i].length.total_cmp(&chain.touches[j].length))?;
     (chain.touches[shortest].length < 0.0).then(|| {
@@ -162,7 +163,7 @@ pub(crate) fn lift_off(chain: &Chain) -> Option<Vec<Touch>> {
 }
 
 /// The touches with two of the same body made one, where the bridge between them runs backwards.
-pub(crate) fn close_bridge(leg: &Leg, chain: &Chain) -> Option<Vec<Touch>> {
+pub(crate) fn close_bridge(leg: &Leg, chain: &Chain) -> Option<Vec<WrapPoint>> {
     let same = |k: usize| chain.touches[k].order == chain.touches[k + 1].order;
     let k = (0..chain.touches.len().saturating_sub(1)).find(|&k| {
         let line = chain.line(leg, k + 1);
@@ -176,7 +177,7 @@ pub(crate) fn close_bridge(leg: &Leg, chain: &Chain) -> Option<Vec<Touch>> {
 }
 
 /// The touches with one divided by a straight bridge over the part that bends away from its body.
-pub(crate) fn open_bridge(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<Vec<Touch>> {
+pub(crate) fn open_bridge(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Option<Vec<WrapPoint>> {
     let k = (0..chain.touches.len())
         .find(|&k| chain.shots[k].largest * chain.touches[k].length > BENT_AWAY && chain.touches[k].length > 0.0)?;
     let touch = chain.touches[k];
@@ -191,11 +192,11 @@ pub(crate) fn open_bridge(leg: &Leg, bodies: &[Body<'_>], chain: &Chain) -> Opti
     touches.remove(k);
     let mut parts = Vec::new();
     if first > 0 {
-        parts.push(Touch::new(touch.order, touch.x, touch.tau, way.states[first - 1].s));
+        parts.push(WrapPoint::new(touch.order, touch.x, touch.tau, way.states[first - 1].s));
     }
     if last + 1 < way.states.len() {
         let from = way.states[last + 1];
-        parts.push(Touch::new(touch.order, from.x, from.tau, touch.length - from.s));
+        parts.push(WrapPoint::new(touch.order, from.x, from.tau, touch.length - from.s));
     }
     touches.splice(k..k, parts);
     Some(touches)

@@ -16,7 +16,7 @@ use signorini_geometry::{Point, Vector};
 /// A geodesic on a body by its start, in the coordinates of the body: a path that has moved on with its body is the start
 /// of the next search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Touch {
+pub(crate) struct WrapPoint {
     /// Which of the bodies of the leg.
     pub order: usize,
     pub x: Point<3>,
@@ -102,9 +102,9 @@ pub(crate) struct Shot {
     pub is_minimal: bool,
 }
 
-impl Touch {
+impl WrapPoint {
     pub fn new(order: usize, x: Point<3>, tau: Vector<3>, length: f64) -> Self {
-        Touch { order, x, tau, length, known: None }
+        WrapPoint { order, x, tau, length, known: None }
     }
 
     /// Follows the geodesic, unless it is known.
@@ -144,7 +144,7 @@ impl Touch {
     ) -> Result<Self, PathError> {
         let (x, level) = foot(body.shape, &body.inside(x))?;
         let tau = tangent(&level, &x, &body.inside_vector(direction))?;
-        Ok(Touch::new(order, x, tau, length))
+        Ok(WrapPoint::new(order, x, tau, length))
     }
 
     /// How much of a Newton step may be taken: half a radian of turn, half the length or a part of the radius.
@@ -163,6 +163,6 @@ impl Touch {
         let (sin, cos) = (step[2] * share).sin_cos();
         let (x, level) = foot(body.shape, &x)?;
         let tau = tangent(&level, &x, &(self.tau * cos + along.g * sin))?;
-        Ok(Touch::new(self.order, x, tau, self.length + share * step[3]))
+        Ok(WrapPoint::new(self.order, x, tau, self.length + share * step[3]))
     }
 }

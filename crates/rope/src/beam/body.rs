@@ -15,7 +15,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
-    Placed, Sampling, Site,
+    Sampling, Site, SlavePoint,
 };
 
 /// Numbers of a node in a configuration, and unknowns.
@@ -282,9 +282,9 @@ impl Body for Beam {
             if let [Some(x), Some(y), Some(z)] = wanted {
                 // The spin that is lacking, whatever the angle.
                 let target = quaternion::product(&quaternion::exponential(&Vector::<3>::new(x, y, z)), &from);
-                let lack = quaternion::logarithm(&quaternion::product(&now, &quaternion::conjugate(&target)));
+                let violation = quaternion::logarithm(&quaternion::product(&now, &quaternion::conjugate(&target)));
                 for i in 0..3 {
-                    out.push(Constraint::of_component(vec![(first + i as u32, 1.0)], lack[i], 3 + i));
+                    out.push(Constraint::of_component(vec![(first + i as u32, 1.0)], violation[i], 3 + i));
                 }
                 continue;
             }
@@ -352,7 +352,7 @@ impl Body for Beam {
         curve_body::sites(self, on, sampling)
     }
 
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         curve_body::placed(self, state, site)
     }
 

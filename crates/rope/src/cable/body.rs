@@ -5,7 +5,7 @@
 
 use super::element::{Carries, Element, Forces, STRESSES, Stresses, UNKNOWNS};
 use crate::centreline::{Centreline, Continuity};
-use crate::chain::body::{ChainError, Rest, check_radius, positive};
+use crate::chain::body::{ChainError, ReferenceLength, check_radius, positive};
 use crate::curve_body::{self, CurveBody};
 use crate::fields::{add_point_data, through};
 use crate::hermite::THREE;
@@ -15,8 +15,8 @@ use crate::quaternion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Placed,
-    Sampling, Site,
+    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Sampling,
+    Site, SlavePoint,
 };
 
 /// A cable that cannot be.
@@ -52,7 +52,7 @@ impl Cable {
         axial: f64,
         bending: f64,
         carries: Carries,
-        rest: Rest,
+        rest: ReferenceLength,
         radius: f64,
     ) -> Result<Self, CableError> {
         if path.continuity != Continuity::C1 {
@@ -161,7 +161,7 @@ impl Body for Cable {
         self.elements.iter().enumerate().all(is_slack)
     }
 
-    fn tighten(&mut self, force: f64) {
+    fn add_sag_spring(&mut self, force: f64) {
         let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
         self.elements.iter_mut().filter(is_cable).for_each(|e| e.tightened = force);
     }
@@ -264,7 +264,7 @@ impl Body for Cable {
         curve_body::sites(self, on, sampling)
     }
 
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         curve_body::placed(self, state, site)
     }
 

@@ -18,7 +18,7 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
-    Placed, Sampling, Site,
+    Sampling, Site, SlavePoint,
 };
 
 /// A rope that cannot be.
@@ -36,7 +36,7 @@ pub enum ChainError {
 
 /// How long a rope is without tension.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rest {
+pub enum ReferenceLength {
     /// As long as its path.
     Path,
     /// Of this length in all, each element by its share of the path.
@@ -45,17 +45,19 @@ pub enum Rest {
     Pretension(f64),
 }
 
-impl Rest {
+impl ReferenceLength {
     /// Unstrained length per length of the path.
     pub(crate) fn ratio(self, path: f64, stiffness: f64) -> Result<f64, ChainError> {
         match self {
-            Rest::Path => Ok(1.0),
-            Rest::Length(length) if length > 0.0 && length.is_finite() => Ok(length / path),
-            Rest::Length(value) => {
+            ReferenceLength::Path => Ok(1.0),
+            ReferenceLength::Length(length) if length > 0.0 && length.is_finite() => Ok(length / path),
+            ReferenceLength::Length(value) => {
                 Err(ChainError::Number { name: "unstrained_length", value, valid: "valid are positive numbers" })
             }
-            Rest::Pretension(tension) if tension >= 0.0 && tension.is_finite() => Ok(stiffness / (stiffness + tension)),
-            Rest::Pretension(value) => Err(ChainError::Number {
+            ReferenceLength::Pretension(tension) if tension >= 0.0 && tension.is_finite() => {
+                Ok(stiffness / (stiffness + tension))
+            }
+            ReferenceLength::Pretension(value) => Err(ChainError::Number {
                 name: "pretension",
                 value,
                 valid: "valid are 0 and positive numbers: a rope carries tension only",
@@ -99,7 +101,13 @@ impl Chain {
     ///
     /// # Errors
     /// A stiffness, length, tension or radius out of range, a path sampled as a smooth one.
-    pub fn new(name: &str, path: &Sampled, stiffness: f64, rest: Rest, radius: f64) -> Result<Self, ChainError> {
+    pub fn new(
+        name: &str,
+        path: &Sampled,
+        stiffness: f64,
+        rest: ReferenceLength,
+        radius: f64,
+    ) -> Result<Self, ChainError> {
         if path.continuity != Continuity::C0 {
             return Err(ChainError::Smooth);
         }
@@ -236,7 +244,7 @@ impl Chain {
 
     /// The tangent at a node is that of the parabola through it and its neighbours, by their unstrained distances: with one
     /// of its chords, the axes of friction would be off by half of the turn there.
-    fn at_node(&self, state: &BodyState, node: usize, placed: Placed) -> Placed {
+    fn at_node(&self, state: &BodyState, node: usize, placed: SlavePoint) -> SlavePoint {
         let (nodes, count) = (self.line.nodes(), self.line.elements());
         let (before, after) = match self.line.closure {
             Closure::Open if node == 0 || node + 1 == nodes => return placed,
@@ -255,7 +263,7 @@ impl Chain {
                 Function { unknown: (3 * n + i) as u32, value, slopes, ..Function::default() }
             })
         });
-        Placed { tangent: Some(tangent), functions: functions.collect(), ..placed }
+        SlavePoint { tangent: Some(tangent), functions: functions.collect(), ..placed }
     }
 
     fn line_of<'a>(&'a self, state: &'a BodyState) -> Line<'a> {
@@ -311,7 +319,7 @@ impl Body for Chain {
         self.active(state).all(|e| self.drives[e] == Drive::Elastic && is_long(e))
     }
 
-    fn tighten(&mut self, force: f64) {
+    fn add_sag_spring(&mut self, force: f64) {
         self.tightened = force;
     }
 
@@ -418,8 +426,8 @@ impl Body for Chain {
             let moved = self.line.position(&state.configuration, *node) - reference;
             for i in 0..3 {
                 if let Some(value) = hold.displacement[i] {
-                    let lack = moved[i] - value(&reference);
-                    out.push(Constraint::of_component(vec![((3 * node + i) as u32, 1.0)], lack, i));
+                    let violation = moved[i] - value(&reference);
+                    out.push(Constraint::of_component(vec![((3 * node + i) as u32, 1.0)], violation, i));
                 }
             }
         }
@@ -445,7 +453,7 @@ impl Body for Chain {
         curve_body::sites(self, on, sampling)
     }
 
-    fn placed(&self, state: &BodyState, site: &Site) -> Placed {
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         let placed = curve_body::placed(self, state, site);
         let node = match site.xi[0] {
             0.0 => self.line.ends(site.patch as usize)[0],
@@ -453,7 +461,7 @@ impl Body for Chain {
             _ => return placed,
         };
         let rests = self.on_winch(state).contains(&node);
-        Placed { rests, ..self.at_node(state, node, placed) }
+        SlavePoint { rests, ..self.at_node(state, node, placed) }
     }
 
     fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {

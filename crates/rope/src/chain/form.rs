@@ -176,12 +176,13 @@ impl Net {
     pub fn equilibrium(&self) -> Result<Shape, FormError> {
         let scale = self.tension_scale();
         let mean = self.members.iter().map(|m| m.unstrained).sum::<f64>() / self.members.len().max(1) as f64;
-        let guess = if scale > 0.0 { scale } else { 1.0 };
-        let densities: Vec<f64> = self.members.iter().map(|m| guess / m.unstrained.max(1e-6 * mean)).collect();
+        let initial_multipliers = if scale > 0.0 { scale } else { 1.0 };
+        let densities: Vec<f64> =
+            self.members.iter().map(|m| initial_multipliers / m.unstrained.max(1e-6 * mean)).collect();
         let mut positions = self.force_density(&densities)?;
         let stiffest = self.members.iter().fold(0.0f64, |s, m| s.max(m.stiffness));
         let mut iterations = 0;
-        let mut limit = FIRST * guess;
+        let mut limit = FIRST * initial_multipliers;
         loop {
             let is_last = limit >= stiffest;
             let stiffness = |m: &Member| m.stiffness.min(limit);

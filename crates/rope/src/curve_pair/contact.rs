@@ -13,9 +13,9 @@
 
 use super::blend::Blend;
 use super::friction::{CurveFriction, Linearised, Tangential, tangential};
-use super::history::{Kept, Key, Kind, Predicted};
+use super::history::{ContactHistory, ContactId, Kind, Predicted};
 use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel};
-use super::search::{Between, CurvePoint, Searched, crossings};
+use super::search::{CurvePoint, SearchScope, Searched, crossings};
 use super::side::{Side, side};
 use crate::hermite::gauss;
 use signorini_contact::Law;
@@ -38,7 +38,7 @@ pub enum Form {
 /// Whether ends make contacts of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    Touch,
+    CurveContactPoint,
     PassBy,
 }
 
@@ -73,7 +73,7 @@ pub struct CurveContact {
     /// How far apart surfaces are looked at, and how far inside each other curves may be in an iterate and still be parted.
     pub reach: f64,
     pub(super) penalties: Penalties,
-    pub(super) history: Vec<Kept>,
+    pub(super) history: Vec<ContactHistory>,
     /// Times of the last state and of the one that is looked for.
     pub(super) times: [f64; 2],
     /// The law while a start is looked for with one that sticks.
@@ -81,8 +81,8 @@ pub struct CurveContact {
 }
 
 /// A contact as it is now.
-pub struct Touch {
-    pub key: Key,
+pub struct CurveContactPoint {
+    pub key: ContactId,
     pub pair: CurvePair,
     /// Points of both curves.
     pub points: [CurvePoint; 2],
@@ -98,11 +98,11 @@ pub struct Touch {
     pub(super) trial: f64,
     /// What the step before predicts of it.
     pub(super) predicted: Option<Predicted>,
-    pub(super) kept: Option<Kept>,
+    pub(super) kept: Option<ContactHistory>,
 }
 
 /// Contacts that were found, and how many pairs have no coordinates.
-pub type Touches = (Vec<Touch>, usize);
+pub type Touches = (Vec<CurveContactPoint>, usize);
 
 /// A curve of the system.
 fn curve<'a>(part: &Part, body: &'a dyn Body) -> Result<Box<dyn Curve + 'a>, CurveContactError> {
@@ -163,7 +163,7 @@ impl CurveContact {
             } else {
                 Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii))
             },
-            ends: if is_sharp { Ends::PassBy } else { Ends::Touch },
+            ends: if is_sharp { Ends::PassBy } else { Ends::CurveContactPoint },
             enforcement,
             friction: None,
             stated: None,
@@ -175,8 +175,8 @@ impl CurveContact {
         })
     }
 
-    pub(super) fn between(&self) -> Between {
-        if self.parts[0] == self.parts[1] { Between::Itself } else { Between::Two }
+    pub(super) fn between(&self) -> SearchScope {
+        if self.parts[0] == self.parts[1] { SearchScope::Itself } else { SearchScope::Two }
     }
 
     /// Penalties from the stiffness of both bodies, of an element in the mean: clamped at its ends it is as much stiffer than
@@ -199,19 +199,19 @@ impl CurveContact {
 
     fn touch(
         &self,
-        key: Key,
+        key: ContactId,
         points: [CurvePoint; 2],
         pair: CurvePair,
         (weight, penalty, share): (f64, f64, (f64, f64)),
-        (kept, predicted): (Option<Kept>, Option<&Predicted>),
-    ) -> Touch {
+        (kept, predicted): (Option<ContactHistory>, Option<&Predicted>),
+    ) -> CurveContactPoint {
         let multiplier = match self.enforcement {
             Enforcement::Penalty { .. } => 0.0,
             _ => kept.map_or(0.0, |k| k.force),
         };
         let trial = multiplier + penalty * pair.gap;
         let predicted = predicted.copied();
-        Touch { key, pair, points, weight, penalty, share, force: trial.min(0.0), trial, predicted, kept }
+        CurveContactPoint { key, pair, points, weight, penalty, share, force: trial.min(0.0), trial, predicted, kept }
     }
 
     /// All contacts of two curves within reach, slave first; `first` are their first unknowns.
@@ -226,7 +226,7 @@ impl CurveContact {
         let mut out = Vec::new();
         let mut lost = 0;
         let mut add =
-            |key: Key, feet: [&Foot; 2], points: [CurvePoint; 2], weight: f64, penalty: f64, blended: Blended| {
+            |key: ContactId, feet: [&Foot; 2], points: [CurvePoint; 2], weight: f64, penalty: f64, blended: Blended| {
                 let kept = key.of(&self.history, |k| k.key, &sides).copied();
                 let before = kept.as_ref().or_else(|| key.near(&self.history, &sides)).map(|k| k.normal);
                 let facing = match side(&sides, &points, feet, before) {
@@ -253,7 +253,7 @@ impl CurveContact {
         let foot = |s: usize, p: &CurvePoint, coordinates: usize| {
             sides[s].curve.foot(sides[s].configuration, p.element, p.xi, coordinates)
         };
-        if self.form != Form::Line || self.ends == Ends::Touch {
+        if self.form != Form::Line || self.ends == Ends::CurveContactPoint {
             for near in crossings(sides[0], sides[1], self.between(), self.reach) {
                 let is_crossing = (0..2).all(|s| !Self::is_end(sides[s].curve, &near.points[s]));
                 if if is_crossing { self.form == Form::Line } else { self.ends == Ends::PassBy } {
@@ -266,7 +266,7 @@ impl CurveContact {
                 };
                 if blended.share(parallel([&feet[0], &feet[1]])).0 > 0.0 {
                     let places = near.points.map(|p| p.element as f64 + p.xi);
-                    let key = Key { kind: Kind::Crossing, places };
+                    let key = ContactId { kind: Kind::Crossing, places };
                     add(key, [&feet[0], &feet[1]], near.points, 1.0, self.penalties.point, blended);
                 }
             }
@@ -282,7 +282,7 @@ impl CurveContact {
         let boxes = boxes(master.curve, master.configuration);
         let tree = Bvh::new(&boxes);
         let reach = self.reach + slave.curve.radius() + master.curve.radius();
-        let half = if self.between() == Between::Itself { 0.5 } else { 1.0 };
+        let half = if self.between() == SearchScope::Itself { 0.5 } else { 1.0 };
         let rule = gauss(points(slave.curve, self.enforcement));
         for element in 0..slave.curve.elements() {
             let length = slave.curve.arc(element, 1.0) - slave.curve.arc(element, 0.0);
@@ -298,8 +298,8 @@ impl CurveContact {
                 for m in near {
                     let met = CurvePoint { element: m.element, xi: m.xi, coordinates: m.coordinates };
                     let arc = |c: &CurvePoint| slave.curve.arc(c.element, c.xi);
-                    let is_next =
-                        self.between() == Between::Itself && !are_apart(slave.curve, arc(&own), arc(&met), m.distance);
+                    let is_next = self.between() == SearchScope::Itself
+                        && !are_apart(slave.curve, arc(&own), arc(&met), m.distance);
                     // Beyond an end there is no curve to lie along.
                     if m.distance > reach || is_next || Self::is_end(master.curve, &met) {
                         continue;
@@ -310,7 +310,7 @@ impl CurveContact {
                         let places = [own, met].map(|p| p.element as f64 + p.xi);
                         let weight = share * length * half;
                         let penalty = self.penalties.line * weight;
-                        add(Key { kind, places }, [&feet[0], &feet[1]], [own, met], weight, penalty, blended);
+                        add(ContactId { kind, places }, [&feet[0], &feet[1]], [own, met], weight, penalty, blended);
                     }
                 }
             }
@@ -321,7 +321,7 @@ impl CurveContact {
     /// Friction of a contact, if there is any: none where nothing was near at the last state, and none without a force.
     pub fn tangential(
         &self,
-        touch: &Touch,
+        touch: &CurveContactPoint,
         sides: [Searched<'_>; 2],
         first: [u32; 2],
         order: Order,
@@ -332,7 +332,7 @@ impl CurveContact {
     /// The same where there may be no force.
     pub(super) fn rubbing(
         &self,
-        touch: &Touch,
+        touch: &CurveContactPoint,
         sides: [Searched<'_>; 2],
         first: [u32; 2],
         order: Order,
@@ -383,7 +383,7 @@ impl Blended {
     }
 }
 
-impl Touch {
+impl CurveContactPoint {
     /// The force, and in a linear system that of a contact which is predicted to be closed.
     pub(super) fn acting(&self, order: Order) -> f64 {
         if order == Order::Second && self.predicted.is_some() { self.trial } else { self.force }

@@ -20,15 +20,15 @@ pub enum Kind {
 
 /// Which contact of two curves: of what kind, and where along both, as elements plus parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Key {
+pub struct ContactId {
     pub kind: Kind,
     pub places: [f64; 2],
 }
 
 /// What is kept of a contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Kept {
-    pub key: Key,
+pub struct ContactHistory {
+    pub key: ContactId,
     /// Force, negative: the multiplier of an augmented Lagrangian, and what the next increment starts with.
     pub force: f64,
     /// Multiplier of friction along the axes.
@@ -43,7 +43,7 @@ pub struct Kept {
 /// What the step before predicts of a closed contact: its force, and the trial of its friction along the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Predicted {
-    pub key: Key,
+    pub key: ContactId,
     pub force: f64,
     pub trial: [f64; 2],
 }
@@ -53,19 +53,19 @@ const SAME: f64 = 1.0;
 /// How far it may have moved and still come from the same side.
 const NEAR: f64 = 3.0;
 
-impl Key {
-    fn apart(&self, other: &Key, sides: &[Searched<'_>; 2]) -> f64 {
+impl ContactId {
+    fn apart(&self, other: &ContactId, sides: &[Searched<'_>; 2]) -> f64 {
         (0..2).fold(0.0f64, |m, s| m.max(sides[s].apart(self.places[s], other.places[s])))
     }
 
     /// The one of a list, by its keys, that is this contact.
-    pub fn of<'a, T>(&self, list: &'a [T], key: impl Fn(&T) -> Key, sides: &[Searched<'_>; 2]) -> Option<&'a T> {
+    pub fn of<'a, T>(&self, list: &'a [T], key: impl Fn(&T) -> ContactId, sides: &[Searched<'_>; 2]) -> Option<&'a T> {
         let same_kind = list.iter().filter(|t| key(t).kind == self.kind);
         nearest(same_kind, |t| self.apart(&key(t), sides), SAME)
     }
 
     /// The one of a list that is nearest, of whatever kind.
-    pub fn near<'a>(&self, list: &'a [Kept], sides: &[Searched<'_>; 2]) -> Option<&'a Kept> {
+    pub fn near<'a>(&self, list: &'a [ContactHistory], sides: &[Searched<'_>; 2]) -> Option<&'a ContactHistory> {
         nearest(list.iter(), |t| self.apart(&t.key, sides), NEAR)
     }
 
@@ -79,7 +79,7 @@ impl Key {
 
     fn from_numbers(n: &[f64]) -> Self {
         let kind = if n[0] == 0.0 { Kind::Crossing } else { Kind::Site(n[1] as usize) };
-        Key { kind, places: [n[2], n[3]] }
+        ContactId { kind, places: [n[2], n[3]] }
     }
 }
 
@@ -97,12 +97,12 @@ impl Predicted {
     }
 
     pub fn list(numbers: &[f64]) -> Vec<Predicted> {
-        let one = |n: &[f64]| Predicted { key: Key::from_numbers(n), force: n[4], trial: [n[5], n[6]] };
+        let one = |n: &[f64]| Predicted { key: ContactId::from_numbers(n), force: n[4], trial: [n[5], n[6]] };
         numbers.chunks_exact(Self::NUMBERS).map(one).collect()
     }
 }
 
-impl Kept {
+impl ContactHistory {
     /// Numbers that stand for one.
     pub const NUMBERS: usize = 23;
 
@@ -124,14 +124,14 @@ impl Kept {
         out
     }
 
-    pub fn list(numbers: &[f64]) -> Vec<Kept> {
+    pub fn list(numbers: &[f64]) -> Vec<ContactHistory> {
         let vector = |n: &[f64], k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
         let stuck = |n: &[f64]| Stuck {
             points: [0, 1].map(|s| MaterialPoint { patch: n[13 + 2 * s] as u32, xi: [n[14 + 2 * s], 0.0, 0.0] }),
             directions: [0, 1].map(|s| vector(n, 17 + 3 * s)),
         };
-        let one = |n: &[f64]| Kept {
-            key: Key::from_numbers(n),
+        let one = |n: &[f64]| ContactHistory {
+            key: ContactId::from_numbers(n),
             force: n[4],
             traction: [n[5], n[6]],
             normal: vector(n, 7),

@@ -1,14 +1,16 @@
 //! Contact between curves as an interaction of a system: assembly, results, history.
 
-use super::contact::{CurveContact, Touch};
+use super::contact::{CurveContact, CurveContactPoint};
 use super::friction::{Tangential, followed};
-use super::history::{Kept, Predicted};
+use super::history::{ContactHistory, Predicted};
 use super::search::{CurvePoint, Searched};
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
-use signorini_mechanics::interaction::{Around, Bodies, Interaction, NotItsHistory, Own, Target, penalty_factor};
-use signorini_mechanics::passage::Way;
+use signorini_mechanics::interaction::{
+    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, penalty_factor,
+};
+use signorini_mechanics::passage::StatePath;
 use signorini_mechanics::{Curve, Enforcement, Part, SimplerFriction, SiteResult};
 
 /// Of the second derivative of the squared distance, relative to that between straight lines, what is hardly any: nearest points
@@ -35,9 +37,9 @@ impl CurveContact {
     }
 
     /// What is kept of a contact: with the traction as a multiplier, or so that the slip is that of the traction.
-    fn kept(&self, c: &Touch, rubs: Option<&Tangential>, sides: [Searched<'_>; 2]) -> Kept {
+    fn kept(&self, c: &CurveContactPoint, rubs: Option<&Tangential>, sides: [Searched<'_>; 2]) -> ContactHistory {
         let before = c.kept;
-        let mut kept = Kept {
+        let mut kept = ContactHistory {
             key: c.key,
             force: c.force,
             traction: [0.0; 2],
@@ -66,7 +68,7 @@ impl CurveContact {
     }
 }
 
-fn site_result(c: &Touch, x: Vector<3>, rubs: Option<&Tangential>, law: Option<&dyn Law>) -> SiteResult {
+fn site_result(c: &CurveContactPoint, x: Vector<3>, rubs: Option<&Tangential>, law: Option<&dyn Law>) -> SiteResult {
     let mut out =
         SiteResult { x, normal: c.pair.normal, weight: c.weight, gap: Some(c.pair.gap), ..SiteResult::default() };
     if c.force == 0.0 {
@@ -88,7 +90,7 @@ fn site_result(c: &Touch, x: Vector<3>, rubs: Option<&Tangential>, law: Option<&
 }
 
 /// Adds a contact to residual and tangent.
-fn assemble(c: &Touch, rubs: Option<&Tangential>, out: &mut Target<'_>) {
+fn assemble(c: &CurveContactPoint, rubs: Option<&Tangential>, out: &mut Assembler<'_>) {
     let (pair, (share, slope)) = (&c.pair, c.share);
     let n = pair.unknowns.len();
     let force = c.acting(if out.tangent.is_some() { Order::Second } else { Order::First });
@@ -155,7 +157,12 @@ impl Interaction for CurveContact {
         }
     }
 
-    fn add_to(&self, at: Bodies<'_>, own: Own<'_>, out: &mut Target<'_>) -> Result<usize, PlaceError> {
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError> {
         let order = if out.tangent.is_some() { Order::Second } else { Order::First };
         self.with(at, |sides, first| {
             let (touches, lost) = self.touches(sides, first, order, &Predicted::list(own.prediction));
@@ -167,10 +174,10 @@ impl Interaction for CurveContact {
         })
     }
 
-    fn results(&self, at: Bodies<'_>, own: Own<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
-            let result = |c: &Touch| {
+            let result = |c: &CurveContactPoint| {
                 let CurvePoint { element, xi, .. } = c.points[0];
                 let x = sides[0].curve.jet(sides[0].configuration, element, xi).x;
                 let rubs = self.tangential(c, sides, first, Order::First);
@@ -186,8 +193,8 @@ impl Interaction for CurveContact {
         closed.flat_map(|k| Predicted { key: k.key, force: k.force, trial: k.traction }.numbers()).collect()
     }
 
-    fn predict(&self, at: Bodies<'_>, own: Own<'_>, step: &[f64], share: f64) -> Vec<f64> {
-        let predicted = |c: &Touch, rubs: Option<Tangential>| {
+    fn predict(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>, step: &[f64], share: f64) -> Vec<f64> {
+        let predicted = |c: &CurveContactPoint, rubs: Option<Tangential>| {
             // A new contact has no force that could turn.
             if c.force == 0.0 && c.predicted.is_none() {
                 return None;
@@ -202,20 +209,21 @@ impl Interaction for CurveContact {
         };
         let found = self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
-            let one = |c: &Touch| predicted(c, self.rubbing(c, sides, first, Order::First));
+            let one = |c: &CurveContactPoint| predicted(c, self.rubbing(c, sides, first, Order::First));
             touches.iter().filter_map(one).flat_map(|p| p.numbers()).collect()
         });
         found.unwrap_or_default()
     }
 
-    fn free_way(&self, way: Way<'_>) -> Result<f64, PlaceError> {
-        self.with(way.from, |from, _| self.with(way.to, |to, _| self.share_of_way(from, to)))?
+    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
+        self.with(path.from, |from, _| self.with(path.to, |to, _| self.share_of_way(from, to)))?
     }
 
-    fn accept(&mut self, at: Bodies<'_>, _: Own<'_>) -> Result<(), PlaceError> {
+    fn accept(&mut self, at: Bodies<'_>, _: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         self.history = self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &[]);
-            let kept = |c: &Touch| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
+            let kept =
+                |c: &CurveContactPoint| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
             touches.iter().map(kept).collect()
         })?;
         self.times[0] = self.times[1];
@@ -223,11 +231,11 @@ impl Interaction for CurveContact {
     }
 
     /// Where a curve bends towards the other as sharply as they are apart, its nearest point is about to part in two.
-    fn doubt(&self, at: Bodies<'_>) -> Option<String> {
+    fn ill_conditioning(&self, at: Bodies<'_>) -> Option<String> {
         let name = |side: usize| at.bodies[self.parts[side].body].name();
         let worst = self.with(at, |sides, first| {
             let (touches, _) = self.touches(sides, first, Order::First, &[]);
-            let bend = |c: &Touch| {
+            let bend = |c: &CurveContactPoint| {
                 let jets =
                     [0, 1].map(|s| sides[s].curve.jet(sides[s].configuration, c.points[s].element, c.points[s].xi));
                 let d = jets[0].x - jets[1].x;
@@ -256,7 +264,13 @@ impl Interaction for CurveContact {
         self.history.iter_mut().for_each(|k| (k.force, k.traction) = (0.0, [0.0; 2]));
     }
 
-    fn augment(&mut self, at: Bodies<'_>, _: Own<'_>, found: &[SiteResult], around: Around) -> Result<f64, PlaceError> {
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        _: InteractionUnknowns<'_>,
+        found: &[SiteResult],
+        around: OuterIteration,
+    ) -> Result<f64, PlaceError> {
         match self.enforcement {
             Enforcement::Penalty { wanted_penetration: Some(wanted) } => Ok(match penalty_factor(found, wanted) {
                 Some(factor) => {
@@ -268,9 +282,9 @@ impl Interaction for CurveContact {
             }),
             Enforcement::Penalty { .. } => Ok(0.0),
             _ => {
-                let touches: Vec<(Touch, [f64; 2])> = self.with(at, |sides, first| {
+                let touches: Vec<(CurveContactPoint, [f64; 2])> = self.with(at, |sides, first| {
                     let (touches, _) = self.touches(sides, first, Order::First, &[]);
-                    let rubs = |c: &Touch| self.tangential(c, sides, first, Order::First);
+                    let rubs = |c: &CurveContactPoint| self.tangential(c, sides, first, Order::First);
                     touches
                         .into_iter()
                         .map(|c| (rubs(&c).map_or([0.0; 2], |t| t.components), c))
@@ -287,7 +301,7 @@ impl Interaction for CurveContact {
                     // Gaps are known to the rounding of positions only.
                     let counts = changed > around.known * c.penalty && most > 0.0;
                     change = change.max(if counts { changed * c.share.0 / (c.weight * most) } else { 0.0 });
-                    history.push(Kept {
+                    history.push(ContactHistory {
                         key: c.key,
                         force: c.force,
                         traction: *traction,
@@ -306,7 +320,7 @@ impl Interaction for CurveContact {
         self.set_aside = friction.instead_of(&mut self.friction);
     }
 
-    fn restate(&mut self) {
+    fn restore_law(&mut self) {
         if let Some(law) = self.set_aside.take() {
             self.friction = Some(law);
         }
@@ -321,10 +335,10 @@ impl Interaction for CurveContact {
 
     fn restore(&mut self, [kept, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
         let [point, line, time] = scales[..] else { return Err(NotItsHistory { contact: self.name.clone() }) };
-        if !kept.len().is_multiple_of(Kept::NUMBERS) {
+        if !kept.len().is_multiple_of(ContactHistory::NUMBERS) {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
-        self.history = Kept::list(kept);
+        self.history = ContactHistory::list(kept);
         self.penalties = super::contact::Penalties { point, line };
         self.times = [time; 2];
         Ok(())

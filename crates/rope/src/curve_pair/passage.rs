@@ -7,7 +7,7 @@
 //! followed to a quarter of the depth of a cell beyond.
 
 use super::contact::CurveContact;
-use super::search::{Between, Searched};
+use super::search::{SearchScope, Searched};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::{Aabb, Point, Vector};
 use signorini_mechanics::curve::{Closure, samples};
@@ -48,7 +48,7 @@ impl CurveContact {
         }
         let boxes = chords.each_ref().map(|list| list.iter().map(swept).collect::<Vec<_>>());
         let trees = boxes.each_ref().map(|b| Bvh::new(b));
-        let is_self = self.between() == Between::Itself;
+        let is_self = self.between() == SearchScope::Itself;
         let count = chords[0].len();
         let is_closed = from[0].curve.closure() == Closure::Closed;
         let mut share = 1.0f64;

@@ -29,7 +29,7 @@ pub struct Searched<'a> {
 
 /// Whether two curves are searched, or one against itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Between {
+pub enum SearchScope {
     Two,
     Itself,
 }
@@ -108,7 +108,7 @@ type Place = ([f64; 2], Nearby);
 /// Minima so far.
 struct Found<'a> {
     sides: [Searched<'a>; 2],
-    between: Between,
+    between: SearchScope,
     limit: f64,
     places: Vec<Place>,
 }
@@ -120,7 +120,7 @@ impl Found<'_> {
         if distance > self.limit {
             return;
         }
-        if self.between == Between::Itself {
+        if self.between == SearchScope::Itself {
             let curve = self.sides[0].curve;
             let arc = |side: usize| curve.arc(points[side].element, points[side].xi);
             // Each pair of points once, the first one along the curve first.
@@ -143,14 +143,14 @@ const SAME: f64 = 1e-5;
 const STATIONARY: f64 = 1e-12;
 
 /// All local minima closer than `reach`, surface to surface, in the order of their places.
-pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64) -> Vec<Nearby> {
+pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: SearchScope, reach: f64) -> Vec<Nearby> {
     let sides = [a, b];
     let limit = reach + a.curve.radius() + b.curve.radius();
     let boxes = sides.map(|s| boxes(s.curve, s.configuration));
     let trees = [Bvh::new(&boxes[0]), Bvh::new(&boxes[1])];
     let mut found = Found { sides, between, limit, places: Vec::new() };
     for (i, j) in trees[0].pairs_within(&trees[1], (&boxes[0], &boxes[1]), limit) {
-        if between == Between::Itself && j < i {
+        if between == SearchScope::Itself && j < i {
             continue;
         }
         for start in starts([&a, &b], [i, j]) {
@@ -175,7 +175,7 @@ pub fn crossings(a: Searched<'_>, b: Searched<'_>, between: Between, reach: f64)
                         let own = CurvePoint { coordinates: 0, ..sides[side].point(corner.u) };
                         let met = CurvePoint { element: m.element, xi: m.xi, coordinates: m.coordinates };
                         let pair = if side == 0 { ([corner.u, u], [own, met]) } else { ([u, corner.u], [met, own]) };
-                        let swap = between == Between::Itself && pair.0[0] > pair.0[1];
+                        let swap = between == SearchScope::Itself && pair.0[0] > pair.0[1];
                         let turned = |(u, p): ([f64; 2], [CurvePoint; 2])| ([u[1], u[0]], [p[1], p[0]]);
                         let (u, points) = if swap { turned(pair) } else { pair };
                         found.add(u, points);

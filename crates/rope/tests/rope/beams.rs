@@ -7,7 +7,7 @@ use signorini_rope::beam::Beam;
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 
@@ -217,7 +217,8 @@ fn elastica_with_and_without_shear() {
         let path = Path::points(&[V::zeros(), V::x()], Closure::Open).unwrap().sample(16, Continuity::C1).unwrap();
         let stiffness = Stiffness { axial: 1e7, shear: [1e7; 2], torsion: 1.0, bending: [1.0; 2] };
         let beam = Beam::new("beam", &path, None, stiffness, 0.0).unwrap();
-        let cable = Cable::new("thread", &path, 1e7, 1.0, Carries::TensionAndCompression, Rest::Path, 0.0).unwrap();
+        let cable =
+            Cable::new("thread", &path, 1e7, 1.0, Carries::TensionAndCompression, ReferenceLength::Path, 0.0).unwrap();
         for (body, name) in [(&beam as &dyn Body, "shear"), (&cable, "torsion-free")] {
             struct Tip<'a>(&'a dyn Body, f64);
             impl Surroundings for Tip<'_> {

@@ -1,13 +1,13 @@
 //! What every body that is a curve owes to the system it is in.
 
 use signorini_geometry::Vector;
-use signorini_mechanics::body::{Body, BodyState, Contribution, Hold, Load, Met, Order, Sampling};
+use signorini_mechanics::body::{Body, BodyState, Contribution, Hold, Load, MasterProjection, Order, Sampling};
 use signorini_rope::beam::Beam;
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 
@@ -28,9 +28,15 @@ fn bodies(closure: Closure) -> Vec<Box<dyn Body>> {
     let smooth = path.sample(6, Continuity::C1).unwrap();
     let straight = path.sample(10, Continuity::C0).unwrap();
     vec![
-        Box::new(Chain::new("chain", &straight, 60.0, Rest::Pretension(3.0), 0.05).unwrap()),
-        Box::new(Cable::new("cable", &smooth, 60.0, 0.0, Carries::TensionOnly, Rest::Pretension(2.0), 0.05).unwrap()),
-        Box::new(Cable::new("thread", &smooth, 60.0, 1.0, Carries::TensionAndCompression, Rest::Path, 0.05).unwrap()),
+        Box::new(Chain::new("chain", &straight, 60.0, ReferenceLength::Pretension(3.0), 0.05).unwrap()),
+        Box::new(
+            Cable::new("cable", &smooth, 60.0, 0.0, Carries::TensionOnly, ReferenceLength::Pretension(2.0), 0.05)
+                .unwrap(),
+        ),
+        Box::new(
+            Cable::new("thread", &smooth, 60.0, 1.0, Carries::TensionAndCompression, ReferenceLength::Path, 0.05)
+                .unwrap(),
+        ),
         Box::new(Beam::new("beam", &smooth, None, stiffness(), 0.05).unwrap()),
     ]
 }
@@ -50,7 +56,7 @@ fn forces_are_derivatives_of_the_energy_and_do_no_work_in_rigid_motions() {
     for closure in [Closure::Open, Closure::Closed] {
         // As they are, and with springs along what may be slack.
         let tightened = bodies(closure).into_iter().map(|mut body| {
-            body.tighten(7.0);
+            body.add_sag_spring(7.0);
             body
         });
         for body in bodies(closure).into_iter().chain(tightened) {
@@ -167,16 +173,16 @@ fn held_rotations_lack_what_is_missing() {
     let state = beam.advance(&beam.start(), &step(beam.unknowns(), 0.8), 0.3);
     let mut needed = vec![0.0; beam.unknowns()];
     for c in beam.hold(Some("end"), &hold, &state).unwrap() {
-        needed[c.terms[0].0 as usize] = -c.lack;
+        needed[c.terms[0].0 as usize] = -c.violation;
     }
     let state = beam.advance(&state, &needed, 1.0);
-    assert!(beam.hold(Some("end"), &hold, &state).unwrap().iter().all(|c| c.lack.abs() < 1e-14));
+    assert!(beam.hold(Some("end"), &hold, &state).unwrap().iter().all(|c| c.violation.abs() < 1e-14));
     // A single component: its rate is what the terms say.
     let hold = Hold { displacement: [None; 3], rotation: [None, Some(&y), None], ..Hold::default() };
     let v = step(beam.unknowns(), 2.9);
     let at = |share: f64| beam.hold(Some("end"), &hold, &beam.advance(&state, &v, share)).unwrap().remove(0);
     let rate: f64 = at(0.0).terms.iter().map(|(u, c)| c * v[*u as usize]).sum();
-    assert!(((at(1e-6).lack - at(-1e-6).lack) / 2e-6 - rate).abs() < 1e-8);
+    assert!(((at(1e-6).violation - at(-1e-6).violation) / 2e-6 - rate).abs() < 1e-8);
     let rope = &bodies(Closure::Open)[0];
     assert!(rope.hold(Some("end"), &hold, &rope.start()).is_err());
 }
@@ -199,7 +205,7 @@ fn the_nearest_point_is_that_of_a_fine_scan() {
                         (body.placed(&state, &site).x - x).norm()
                     })
                     .fold(f64::INFINITY, f64::min);
-                let Some(Met::Foot(foot)) = master.nearest(&x, 10.0, None) else { panic!("nothing") };
+                let Some(MasterProjection::Foot(foot)) = master.nearest(&x, 10.0, None) else { panic!("nothing") };
                 let found = (foot.jet.x - x).norm();
                 assert!(found < scan + 1e-12 && found > scan - 1e-4, "{} {found} {scan}", body.name());
                 if foot.coordinates == 1 {

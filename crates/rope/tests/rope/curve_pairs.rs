@@ -6,13 +6,13 @@ use signorini_contact::Coulomb;
 use signorini_contact::law::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
-use signorini_mechanics::interaction::{Bodies, Interaction, Own};
+use signorini_mechanics::interaction::{Bodies, Interaction, InteractionUnknowns};
 use signorini_mechanics::{Curve, Enforcement};
 use signorini_rope::beam::Beam;
 use signorini_rope::curve_pair::blend::Blend;
 use signorini_rope::curve_pair::contact::{CurveContact, Form, Penalties};
 use signorini_rope::curve_pair::measure::{CurvePair, Wanted, elastic_slip, measure};
-use signorini_rope::curve_pair::search::{Between, Searched, crossings};
+use signorini_rope::curve_pair::search::{SearchScope, Searched, crossings};
 use signorini_rope::section::Stiffness;
 
 type V = Vector<3>;
@@ -53,7 +53,7 @@ fn pair(bodies: &[Beam; 2], states: &[BodyState], kind: &Kind, order: Order) -> 
     let wanted = (Wanted::GapAndSlip(bends.each_ref().map(Vec::as_slice)), order);
     match kind {
         Kind::Crossing => {
-            let near = crossings(sides[0], sides[1], Between::Two, 2.0);
+            let near = crossings(sides[0], sides[1], SearchScope::Two, 2.0);
             let near = near.iter().find(|n| n.points.iter().all(|p| p.coordinates == 1)).unwrap();
             let feet = [0, 1].map(|s| foot(s, near.points[s].element, near.points[s].xi, 1));
             measure([&feet[0], &feet[1]], first, None, wanted).unwrap()
@@ -61,7 +61,7 @@ fn pair(bodies: &[Beam; 2], states: &[BodyState], kind: &Kind, order: Order) -> 
         Kind::Line | Kind::End => {
             let a = if matches!(kind, Kind::Line) { foot(0, 1, 0.3, 0) } else { foot(0, 2, 1.0, 0) };
             let master = bodies[1].master(None, &states[1]).unwrap();
-            let Some(signorini_mechanics::body::Met::Foot(b)) = master.nearest(&a.jet.x, 5.0, None) else {
+            let Some(signorini_mechanics::body::MasterProjection::Foot(b)) = master.nearest(&a.jet.x, 5.0, None) else {
                 panic!("nothing near")
             };
             assert_eq!(b.coordinates, 1);
@@ -189,7 +189,7 @@ fn curves_touch_themselves_but_not_next_to_themselves() {
     let state = body.start();
     let curve = body.curve(None).unwrap();
     let side = searched(curve.as_ref(), &state);
-    let near = crossings(side, side, Between::Itself, 0.5);
+    let near = crossings(side, side, SearchScope::Itself, 0.5);
     assert!(!near.is_empty());
     // Turns of the helix pass each other at a pitch of 0.06 · 2π.
     let pitch = 0.06 * std::f64::consts::TAU;
@@ -200,7 +200,7 @@ fn curves_touch_themselves_but_not_next_to_themselves() {
     let state = straight.start();
     let curve = straight.curve(None).unwrap();
     let side = searched(curve.as_ref(), &state);
-    assert!(crossings(side, side, Between::Itself, 0.5).is_empty());
+    assert!(crossings(side, side, SearchScope::Itself, 0.5).is_empty());
     let master = straight.master(None, &state).unwrap();
     let site = signorini_mechanics::body::Site { patch: 3, xi: [0.2, 0.0], weight: 1.0 };
     assert!(master.nearest(&V::new(1.6, 0.0, 0.0), 0.3, Some(&site)).is_none());
@@ -335,7 +335,7 @@ fn slip_is_limited_and_what_touched_follows() {
     let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
     let first = first_unknowns(&all);
     let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
-    let own = Own { multipliers: &[], first: 0, prediction: &[] };
+    let own = InteractionUnknowns { multipliers: &[], first: 0, prediction: &[] };
     let at = |states: &[BodyState], x: f64| {
         let mut states = states.to_vec();
         states[0].configuration.chunks_mut(6).for_each(|c| c[0] += x);

@@ -7,14 +7,14 @@ use signorini_geometry::Vector;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Ellipsoid, RigidShape};
 use signorini_mechanics::body::Body;
-use signorini_mechanics::interaction::{Bodies, Own, Target};
+use signorini_mechanics::interaction::{Assembler, Bodies, InteractionUnknowns};
 use signorini_mechanics::{
     AxisChoice, Contact, Enforcement, Motion, Part, PlacedLoad, RigidBody, Sampling, Support, System, SystemState,
     TimedLoad,
 };
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 use signorini_solid::material::Elastic;
@@ -61,20 +61,20 @@ fn sphere(centre: V, radius: f64) -> RigidBody {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Met {
+enum MasterProjection {
     Ball,
     Face,
 }
 
 /// A ridge of a block, bent a little, in a ball or the face of another block.
-fn touching(met: Met, radius: f64, law: Option<Box<dyn Law>>) -> System {
+fn touching(met: MasterProjection, radius: f64, law: Option<Box<dyn Law>>) -> System {
     let half = 0.5f64.sqrt();
     let ridge = |x: V| V::new(x[0], half * (x[1] - x[2]), half * (x[1] + x[2]) + 0.02 * x[0] * x[0]);
     let size = [V::new(-1.0, -1.0, -1.0), V::zeros()];
     let own = solid("ridge", size, [2, 1, 1], 2, (100.0, 0.3), ridge, (UP, radius));
     let other: Box<dyn Body> = match met {
-        Met::Ball => Box::new(sphere(V::new(-0.4, 0.05, 2.0 + radius - 0.02), 2.0)),
-        Met::Face => {
+        MasterProjection::Ball => Box::new(sphere(V::new(-0.4, 0.05, 2.0 + radius - 0.02), 2.0)),
+        MasterProjection::Face => {
             // Upside down: its top looks down.
             let map = |x: V| V::new(x[0] - 0.4, -x[1], radius - 0.02 - x[2] + 0.03 * x[1] * x[1]);
             Box::new(solid(
@@ -90,8 +90,8 @@ fn touching(met: Met, radius: f64, law: Option<Box<dyn Law>>) -> System {
     };
     let bodies: Vec<Box<dyn Body>> = vec![Box::new(own), other];
     let master = match met {
-        Met::Ball => Part::from(1),
-        Met::Face => part(1, "top"),
+        MasterProjection::Ball => Part::from(1),
+        MasterProjection::Face => part(1, "top"),
     };
     let sides = [(part(0, "rim"), bodies[0].as_ref()), (master, bodies[1].as_ref())];
     let [own, met] = sides;
@@ -127,7 +127,7 @@ fn moved(system: &System) -> (SystemState, Vec<f64>) {
 
 #[test]
 fn tangents_are_derivatives() {
-    for met in [Met::Ball, Met::Face] {
+    for met in [MasterProjection::Ball, MasterProjection::Face] {
         for radius in [0.0, 0.1] {
             for law in laws() {
                 let rubs = law.is_some();
@@ -197,15 +197,15 @@ fn tangents_of_beams_along_a_rounding() {
 fn forces_have_neither_resultant_nor_moment() {
     for radius in [0.0, 0.1] {
         for law in laws() {
-            let system = touching(Met::Face, radius, law);
+            let system = touching(MasterProjection::Face, radius, law);
             let (at, _) = moved(&system);
             let first = [0, system.bodies[0].unknowns() as u32];
             let count = first[1] as usize + system.bodies[1].unknowns();
             let size = count + at.multipliers.len();
             let (mut residual, mut sizes) = (vec![0.0; size], vec![0.0; size]);
-            let own = Own { multipliers: &at.multipliers, first: count as u32, prediction: &[] };
+            let own = InteractionUnknowns { multipliers: &at.multipliers, first: count as u32, prediction: &[] };
             let bodies = Bodies { bodies: &system.bodies, states: &at.bodies, first: &first };
-            let mut target = Target { residual: &mut residual, sizes: &mut sizes, tangent: None };
+            let mut target = Assembler { residual: &mut residual, sizes: &mut sizes, tangent: None };
             assert_eq!(system.contacts[0].add_to(bodies, own, &mut target).unwrap(), 0);
             let largest = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs()));
             assert!(largest > 0.0);
@@ -234,16 +234,18 @@ fn a_bar_on_its_edge_carries_as_beams_do() {
         let upper = |x: V| V::new(x[0], half * (x[1] - x[2]), half * (x[1] + x[2]) + a * half + radius - sunk);
         let size = |l: f64| [V::new(0.0, -0.5 * a, -0.5 * a), V::new(l, 0.5 * a, 0.5 * a)];
         let flat = |x: V| V::new(at[0] - x[1], x[0] - at[1], x[2] - 0.5 * a);
-        for met in [Met::Ball, Met::Face] {
+        for met in [MasterProjection::Ball, MasterProjection::Face] {
             let bar = solid("bar", size(lengths[0]), [8, 1, 1], 3, (young, 0.0), upper, (["front", "bottom"], radius));
             let other: Box<dyn Body> = match met {
-                Met::Ball => Box::new(sphere(V::new(at[0], 0.0, -0.5), 0.5)),
-                Met::Face => Box::new(solid("lower", size(lengths[1]), [8, 1, 1], 3, (young, 0.0), flat, (UP, 0.0))),
+                MasterProjection::Ball => Box::new(sphere(V::new(at[0], 0.0, -0.5), 0.5)),
+                MasterProjection::Face => {
+                    Box::new(solid("lower", size(lengths[1]), [8, 1, 1], 3, (young, 0.0), flat, (UP, 0.0)))
+                }
             };
             let own = compliance(at[0], at[0]);
             let [gives, master] = match met {
-                Met::Ball => [own, 0.0],
-                Met::Face => [own + compliance(at[1], at[1]), 1.0],
+                MasterProjection::Ball => [own, 0.0],
+                MasterProjection::Face => [own + compliance(at[1], at[1]), 1.0],
             };
             let expected = push * compliance(at[0], lengths[0]) / gives;
             let bodies: Vec<Box<dyn Body>> = vec![Box::new(bar), other];
@@ -277,7 +279,7 @@ fn the_end_of_a_rope_rests_on_an_edge() {
     let block = solid("block", size, [2, 2, 2], 1, (1e6, 0.3), |x| x, (["top", "right"], radius));
     let start = V::new(-1.0, 0.0, r);
     let path = Path::points(&[start, V::new(0.0, 0.0, r)], Closure::Open).unwrap().sample(8, Continuity::C0).unwrap();
-    let rope = Chain::new("rope", &path, stiffness, Rest::Pretension(1.0), section).unwrap();
+    let rope = Chain::new("rope", &path, stiffness, ReferenceLength::Pretension(1.0), section).unwrap();
     let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(block)];
     let sides = [(part(0, "end"), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
     let [own, met] = sides;

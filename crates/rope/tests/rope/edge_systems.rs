@@ -11,7 +11,7 @@ use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::curve_pair::CurveContact;
 use signorini_rope::path::Path;
 use signorini_solid::material::Elastic;
@@ -117,7 +117,7 @@ fn a_rope_slips_over_an_edge() {
         points.extend((0..=16).map(|k| V::new(r * angle(k).sin(), 0.0, r * angle(k).cos())));
         points.extend((1..=8).map(|k| V::new(r, 0.0, -h * f64::from(k))));
         let path = Path::points(&points, Closure::Open).unwrap().sample(points.len() - 1, Continuity::C0).unwrap();
-        let rope = Chain::new("rope", &path, 1e3, Rest::Pretension(1.0), section).unwrap();
+        let rope = Chain::new("rope", &path, 1e3, ReferenceLength::Pretension(1.0), section).unwrap();
         let tensions = rope.clone();
         let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(block)];
         let sides = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
@@ -196,7 +196,8 @@ fn a_smooth_rope_slips_over_a_rounding() {
     let path = Path::spline(&points, Closure::Open).unwrap().sample(points.len() - 1, Continuity::C1).unwrap();
     for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::Multiplier] {
         let block = solid("block", size, [2, 2, 2], 1, (1e5, 0.3), |x| x, edge(["top", "right"], radius));
-        let rope = Cable::new("rope", &path, 1e3, 0.0, Carries::TensionOnly, Rest::Pretension(1.0), section).unwrap();
+        let rope = Cable::new("rope", &path, 1e3, 0.0, Carries::TensionOnly, ReferenceLength::Pretension(1.0), section)
+            .unwrap();
         let tensions = rope.clone();
         let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(block)];
         let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];

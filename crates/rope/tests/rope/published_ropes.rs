@@ -8,7 +8,7 @@ use signorini_geometry::rigid_shape::{Cone, Cylinder, Ellipsoid, RigidShape, Sph
 use signorini_mechanics::*;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::{Path, Sampled};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -110,7 +110,7 @@ fn drawn(shape: &Arc<dyn RigidShape>, (on, tau, h): (&[V], [V; 2], f64), mu: [f6
         continuity: Continuity::C0,
     };
     let stiffness = 1e7;
-    let rope = Chain::new("rope", &path, stiffness, Rest::Pretension(1.0), 0.0).unwrap();
+    let rope = Chain::new("rope", &path, stiffness, ReferenceLength::Pretension(1.0), 0.0).unwrap();
     let mut system = System::default();
     system.bodies.push(Box::new(rope.clone()));
     system.bodies.push(Box::new(rigid(Arc::clone(shape))));
@@ -199,7 +199,8 @@ fn slip_ends_within_a_node_of_the_closed_form() {
         let path = path.unwrap().sample(cells, Continuity::C0).unwrap();
         // Displacements are those of small strains, in proportion to 1/EA.
         let stiff = 1e3;
-        let rope = Chain::new("rope", &path, stiff * p("EA"), Rest::Pretension(p("T_initial")), 0.0).unwrap();
+        let rope =
+            Chain::new("rope", &path, stiff * p("EA"), ReferenceLength::Pretension(p("T_initial")), 0.0).unwrap();
         let mut system = System::default();
         system.bodies.push(Box::new(rope.clone()));
         system.bodies.push(Box::new(rigid(Arc::new(Cylinder { point: V::zeros(), axis: V::z(), radius: r }))));

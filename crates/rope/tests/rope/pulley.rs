@@ -11,7 +11,7 @@ use signorini_mechanics::{
 };
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_solid::material::Elastic;
 use signorini_solid::{SolidBody, Space, StressLaw};
@@ -51,7 +51,7 @@ fn system(young: f64, mu: Option<f64>, enforcement: Enforcement) -> (System, Cha
     // As files have them: some nodes start a millionth off the pulley, others in it.
     let points: Vec<V> = points.iter().map(|p| p.map(|v| (v * 1e6).round() / 1e6)).collect();
     let path = Path::points(&points, Closure::Open).unwrap().sample(points.len() - 1, Continuity::C0).unwrap();
-    let rope = Chain::new("rope", &path, 200.0, Rest::Pretension(0.1), SECTION).unwrap();
+    let rope = Chain::new("rope", &path, 200.0, ReferenceLength::Pretension(0.1), SECTION).unwrap();
     let copy = rope.clone();
     let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(pulley)];
     let sides = [(Part::from(0), bodies[0].as_ref()), (part(1, "back"), bodies[1].as_ref())];

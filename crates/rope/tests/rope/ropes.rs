@@ -7,7 +7,7 @@ use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::chain::form::{Member, Net};
 use signorini_rope::chain::winch::WinchEnd;
 use signorini_rope::path::Path;
@@ -102,7 +102,8 @@ fn smooth_cables_converge_to_the_catenary_however_stiff() {
         // Stretchy ropes first.
         for stretch in [20.0, 1e3, 1e5, 1e7] {
             let ea = stretch * force;
-            let cable = Cable::new("cable", &path, ea, 0.0, Carries::TensionOnly, Rest::Length(length), 0.0).unwrap();
+            let cable = Cable::new("cable", &path, ea, 0.0, Carries::TensionOnly, ReferenceLength::Length(length), 0.0)
+                .unwrap();
             let start = cable.restart(state.as_ref().unwrap_or(&cable.start()));
             let options = Options { most: 60, tolerance: (1e-9 * force).max(1e-13 * ea), search: Search::Shares };
             let mut around = Hanging { body: &cable, weight: w };
@@ -126,12 +127,14 @@ fn smooth_cables_converge_to_the_catenary_however_stiff() {
 fn slack_ropes_carry_nothing() {
     let ends = [V::zeros(), V::x()];
     let path = Path::points(&ends, Closure::Open).unwrap();
-    let chain = Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, Rest::Length(1.2), 0.0).unwrap();
+    let chain =
+        Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, ReferenceLength::Length(1.2), 0.0).unwrap();
     let mut out = Contribution::new(chain.unknowns());
     assert_eq!(chain.internal(&chain.start(), Order::First, &mut out).unwrap(), 0.0);
     assert!(out.forces.iter().all(|f| *f == 0.0) && chain.slack(&chain.start()).len() == 4);
     let pulled =
-        Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, Rest::Pretension(2.0), 0.0).unwrap();
+        Chain::new("rope", &path.sample(4, Continuity::C0).unwrap(), 50.0, ReferenceLength::Pretension(2.0), 0.0)
+            .unwrap();
     assert!(pulled.tensions(&pulled.start()).iter().all(|t| (t - 2.0).abs() < 1e-12));
     // A net with a rope that is too long: it stays slack, and the node that only it holds is told.
     let net = Net {
@@ -182,7 +185,7 @@ impl Surroundings for OverPulley<'_> {
 fn ropes_run_through_pulleys_and_over_winches() {
     // One side of the pulley is cut shorter: rope runs through until both tensions are the same.
     let path = Path::points(&[V::zeros(), V::new(3.0, 0.0, 0.0), V::new(3.0, -1.0, 0.0)], Closure::Open).unwrap();
-    let mut chain = Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Path, 0.0)
+    let mut chain = Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, ReferenceLength::Path, 0.0)
         .unwrap()
         .with_pulleys(&[1])
         .unwrap();
@@ -198,7 +201,7 @@ fn ropes_run_through_pulleys_and_over_winches() {
     let kept = chain.unstrained_length(&found.states[0], 0) + chain.unstrained_length(&found.states[0], 1);
     assert!((kept - 3.8).abs() < 1e-13);
     assert!(
-        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Path, 0.0)
+        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, ReferenceLength::Path, 0.0)
             .unwrap()
             .with_pulleys(&[0])
             .is_err()
@@ -207,7 +210,8 @@ fn ropes_run_through_pulleys_and_over_winches() {
     // A winch keeps its tension: a weight between it and a rope is in balance where both pulls are.
     let path = Path::points(&[V::zeros(), V::new(4.0, 0.0, 0.0)], Closure::Open).unwrap();
     let mut chain =
-        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, Rest::Pretension(1.0), 0.0).unwrap();
+        Chain::new("rope", &path.sample(2, Continuity::C0).unwrap(), 100.0, ReferenceLength::Pretension(1.0), 0.0)
+            .unwrap();
     chain.set_tension(1, 5.0).unwrap();
     struct Weight<'a>(&'a Chain);
     impl Surroundings for Weight<'_> {
@@ -232,7 +236,7 @@ fn ropes_run_through_pulleys_and_over_winches() {
 fn wound(at: WinchEnd, by: f64, weight: f64, times: &[f64]) -> (Chain, BodyState, Vec<f64>, [V; 2]) {
     let path = Path::points(&[V::zeros(), V::new(4.0, 0.0, 3.0)], Closure::Open).unwrap();
     let path = path.sample(40, Continuity::C0).unwrap();
-    let rope = Chain::new("rope", &path, 1e4, Rest::Pretension(10.0), 0.0).unwrap();
+    let rope = Chain::new("rope", &path, 1e4, ReferenceLength::Pretension(10.0), 0.0).unwrap();
     let rope = rope.with_winch(at, by.max(0.0), Arc::new(move |t| by * t)).unwrap();
     let mut system = System::default();
     system.bodies.push(Box::new(rope.clone()));

@@ -10,7 +10,7 @@ use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
 use std::sync::Arc;
@@ -97,7 +97,7 @@ fn the_bend_of_45_degrees_in_one_step() {
 fn fall(cells: usize, height: f64, enforcement: Enforcement) -> (V, Vec<IncrementResult>) {
     let path = Path::points(&[V::new(-2.0, 0.0, height), V::new(2.0, 0.0, height)], Closure::Open).unwrap();
     let path = path.sample(cells, Continuity::C1).unwrap();
-    let cable = Cable::new("cable", &path, 1e4, 0.0, Carries::TensionOnly, Rest::Length(6.0), 0.02).unwrap();
+    let cable = Cable::new("cable", &path, 1e4, 0.0, Carries::TensionOnly, ReferenceLength::Length(6.0), 0.02).unwrap();
     let mut system = System::default();
     system.bodies.push(Box::new(cable));
     system.bodies.push(Box::new(rigid(Cylinder { point: V::zeros(), axis: V::y(), radius: 0.5 })));
@@ -143,8 +143,10 @@ fn a_slack_cable_falls_from_afar() {
 #[test]
 fn nothing_passes_through_in_one_increment() {
     let path = Path::points(&[V::new(-1.0, 0.0, 0.1), V::new(1.0, 0.0, 0.1)], Closure::Open).unwrap();
-    let rope =
-        || Chain::new("rope", &path.sample(10, Continuity::C0).unwrap(), 10.0, Rest::Pretension(1.0), 0.01).unwrap();
+    let rope = || {
+        Chain::new("rope", &path.sample(10, Continuity::C0).unwrap(), 10.0, ReferenceLength::Pretension(1.0), 0.01)
+            .unwrap()
+    };
     let bar = |motion: fn(f64) -> V| {
         let shape = Cylinder { point: V::zeros(), axis: V::y(), radius: 0.03 };
         let motion = Motion::Prescribed(Arc::new(move |t| RigidMotion::new(V::zeros(), V::zeros(), motion(t))));
@@ -203,7 +205,7 @@ fn capstan(cells: usize, sampling: Sampling, enforcement: Enforcement) -> Vec<In
     let turn = std::f64::consts::PI * 1.5;
     let path = Path::circle(V::zeros(), V::x(), V::z(), 1.02, turn).unwrap().sample(cells, Continuity::C0).unwrap();
     let mut system = System::default();
-    let chain = Chain::new("rope", &path, 1e3, Rest::Pretension(1.0), 0.02).unwrap();
+    let chain = Chain::new("rope", &path, 1e3, ReferenceLength::Pretension(1.0), 0.02).unwrap();
     system.bodies.push(Box::new(chain));
     system.bodies.push(Box::new(rigid(Cylinder { point: V::zeros(), axis: V::y(), radius: 1.0 })));
     system.supports.push(hold("start", std::array::from_fn(|_| zero()), [None, None, None]));
@@ -242,7 +244,7 @@ fn a_capstan_takes_few_iterations() {
 fn a_sprung_end_gives_way() {
     let path = Path::points(&[V::zeros(), V::x()], Closure::Open).unwrap().sample(8, Continuity::C0).unwrap();
     let (stiffness, spring) = (100.0, 10.0);
-    let rope = Chain::new("rope", &path, stiffness, Rest::Pretension(1.0), 0.0).unwrap();
+    let rope = Chain::new("rope", &path, stiffness, ReferenceLength::Pretension(1.0), 0.0).unwrap();
     let mut system = System::default();
     system.bodies.push(Box::new(rope.clone()));
     system.supports.push(hold("start", std::array::from_fn(|_| zero()), [None, None, None]));

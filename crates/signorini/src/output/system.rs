@@ -5,7 +5,7 @@ use super::camera::bounds;
 use crate::fields::Fields;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::{Body, Space};
-use crate::report::Carried;
+use crate::report::TractionKind;
 use crate::report::vector;
 use signorini_contact::{GapJet, Status};
 use signorini_fem::CellShape;
@@ -56,7 +56,7 @@ pub struct RigidShown {
 #[derive(Clone)]
 pub struct ContactShown {
     pub fields: Fields,
-    pub carries: Carried,
+    pub carries: TractionKind,
     pub surface: Option<ShownSurface>,
 }
 

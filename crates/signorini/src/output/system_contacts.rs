@@ -8,7 +8,7 @@ use super::page::{Page, Sign, three_digits};
 use super::panel::{Axis, Dots, Panel};
 use super::system::{ContactShown, SystemShown};
 use crate::problem::Space;
-use crate::report::Carried;
+use crate::report::TractionKind;
 use signorini_geometry::Vector;
 
 /// The largest force or traction of a contact is drawn as a line of this part of the extent of the picture.
@@ -37,12 +37,12 @@ impl ContactShown {
         };
         let value = |name: &str| self.fields.array(name).map_or(0.0, |v| v[k]);
         let traction = of("normal") * value("contact_pressure") + of("friction_traction");
-        if self.carries == Carried::Force { traction * value("weight") } else { traction }
+        if self.carries == TractionKind::Force { traction * value("weight") } else { traction }
     }
 
     /// The force at a tested point.
     pub fn force(&self, k: usize) -> Vector<3> {
-        let weight = self.fields.array("weight").filter(|_| self.carries != Carried::Force).map_or(1.0, |w| w[k]);
+        let weight = self.fields.array("weight").filter(|_| self.carries != TractionKind::Force).map_or(1.0, |w| w[k]);
         self.carried(k) * weight
     }
 
@@ -92,9 +92,9 @@ impl ContactShown {
     /// The name of what is carried, with its unit.
     fn unit(&self, labels: &Labels, what: &str) -> String {
         match self.carries {
-            Carried::Force => labels.force(what),
-            Carried::LineLoad => labels.force_per_length(what),
-            Carried::Pressure => labels.pressure(what),
+            TractionKind::Force => labels.force(what),
+            TractionKind::LineLoad => labels.force_per_length(what),
+            TractionKind::Pressure => labels.pressure(what),
         }
     }
 }
@@ -135,9 +135,9 @@ pub fn draw(
         }
         let on = if shown.contacts.len() > 1 { contact.fields.name.as_str() } else { "contact" };
         let what = match contact.carries {
-            Carried::Force => format!("forces on {on}"),
-            Carried::LineLoad => format!("force per length on {on}"),
-            Carried::Pressure => format!("traction on {on}"),
+            TractionKind::Force => format!("forces on {on}"),
+            TractionKind::LineLoad => format!("force per length on {on}"),
+            TractionKind::Pressure => format!("traction on {on}"),
         };
         key.push((Sign::Line(viridis(0.15)), contact.unit(labels, &format!("{what}, up to {}", three_digits(most)))));
     }
@@ -166,7 +166,7 @@ fn order(contact: &ContactShown, plane: Option<Space>, labels: &Labels) -> Optio
         return Some(Order { places, name: labels.length("length along the contact points") });
     }
     let closed = contact.closed();
-    let space = plane.filter(|_| contact.carries == Carried::Pressure && closed.len() >= 3)?;
+    let space = plane.filter(|_| contact.carries == TractionKind::Pressure && closed.len() >= 3)?;
     let along = Along::of(contact, space, labels);
     let mut places: Vec<(f64, usize)> = closed.iter().map(|&k| (along.place(&points[k]), k)).collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -232,7 +232,8 @@ pub fn chart(contact: &ContactShown, plane: Option<Space>, time: f64, labels: &L
     let title = format!("Contact of `{}`, t = {}", contact.fields.name, label(time));
     let mut page = Page::new((WIDTH, 460.0), &title, "");
     let high = normal.iter().chain(friction.iter().flatten()).map(|p| p.1).fold(0.0f64, f64::max);
-    let what = contact.unit(labels, if contact.carries == Carried::Pressure { "traction" } else { "force per length" });
+    let what =
+        contact.unit(labels, if contact.carries == TractionKind::Pressure { "traction" } else { "force per length" });
     let range = (places.first()?.0, places.last()?.0);
     let (x, y) = (Axis::around(&name, range), Axis::from_zero(&what, (0.0, high)));
     let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, WIDTH, 456.0], x, y);

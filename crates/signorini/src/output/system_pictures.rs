@@ -24,7 +24,7 @@ const SMALL: f64 = 0.4;
 const VISIBLE: f64 = 0.05;
 
 /// A name and a picture.
-type Drawn = (String, String);
+type NamedPicture = (String, String);
 
 /// Draws the last state, the history, and a film of the states on the way.
 ///
@@ -68,7 +68,7 @@ pub fn draw(
 }
 
 /// What touches from near by, or from the side to which it looks.
-fn contact_zone(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Result<Vec<Drawn>, OutputError> {
+fn contact_zone(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Result<Vec<NamedPicture>, OutputError> {
     let size = |[low, high]: [Vector<3>; 2]| (high - low).max();
     let in_space = plan.space == Space::ThreeD;
     let title = titled(&view.what, shown.time);
@@ -111,7 +111,7 @@ fn of_contact(
     contact: &ContactShown,
     time: f64,
     labels: &Labels,
-) -> Result<Option<Drawn>, OutputError> {
+) -> Result<Option<NamedPicture>, OutputError> {
     let in_space = plan.space == Space::ThreeD;
     let name = &contact.fields.name;
     let pressure = || match plan.system.contacts.len() {

@@ -6,7 +6,7 @@ use super::output::{self, Line, LinePoint};
 use super::picture;
 use super::surface::{box_around, surfaces};
 use crate::output::Folder;
-use crate::plan::Placed;
+use crate::plan::LocatedExpression;
 use crate::plan::paths::{PlannedEnd, PlannedPath, PlannedStation};
 use crate::problem::CaseError;
 use crate::report::{
@@ -215,7 +215,7 @@ fn rotation_axis(case: &PathCase, body: &crate::plan::RigidBody, times: &[f64]) 
 }
 
 /// A tension at a time, which is positive.
-fn tension(case: &PathCase, value: Option<&Placed>, time: f64) -> Result<Option<f64>, CaseError> {
+fn tension(case: &PathCase, value: Option<&LocatedExpression>, time: f64) -> Result<Option<f64>, CaseError> {
     let Some(value) = value else { return Ok(None) };
     let found = value.at(case.problem(), time)?;
     if found > 0.0 {

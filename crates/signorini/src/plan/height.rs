@@ -5,7 +5,7 @@ use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Expression;
 use crate::problem::units::{Dimension, LENGTH};
 use crate::problem::{CaseError, List, Value};
-use crate::problem::{Cylinder, Ellipsoid, Looks, Rigid, Shape, Space};
+use crate::problem::{Cylinder, Ellipsoid, Orientation, Rigid, Shape, Space};
 use signorini_geometry::Vector;
 use signorini_geometry::height_field::View;
 use signorini_geometry::rigid_shape::NoHeight;
@@ -45,8 +45,8 @@ pub(super) fn read(
 
 /// What is wrong with the direction of a shape.
 fn told(planner: &Planner<'_>, shape: &Shape, side: Side, why: NoHeight) -> CaseError {
-    let at = match shape.closed_form().map(|shape| shape.stance().looks) {
-        Some(Looks::Along(direction, _) | Looks::Round(Some(direction))) => planner.key(direction),
+    let at = match shape.closed_form().map(|shape| shape.placement().orientation) {
+        Some(Orientation::Along(direction, _) | Orientation::Round(Some(direction))) => planner.key(direction),
         _ => planner.key(shape),
     };
     let below = side == Side::Below;
@@ -72,7 +72,7 @@ struct BesideMembrane<'a, 'b> {
 impl BesideMembrane<'_, '_> {
     /// Round an axis of symmetry shapes stand on it and are round themselves.
     fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
-        let Some(place) = shape.closed_form().and_then(|shape| shape.stance().place) else { return Ok(()) };
+        let Some(place) = shape.closed_form().and_then(|shape| shape.placement().place) else { return Ok(()) };
         let problem = self.planner.problem;
         let at = self.vector(place, LENGTH)?;
         if at[0] != 0.0 || at[1] != 0.0 {

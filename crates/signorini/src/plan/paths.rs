@@ -4,7 +4,7 @@ mod statement;
 
 pub use statement::{PathPlan, PlannedEnd, PlannedPath, PlannedRope, PlannedStation, PlannedWinding, Task};
 
-use super::placed::Placed;
+use super::located::LocatedExpression;
 use super::planner::Planner;
 use super::rigid::RigidBody;
 use crate::expression::Scope;
@@ -67,7 +67,7 @@ pub(super) fn none_of_paths(problem: &Problem) -> Result<(), CaseError> {
         .help(format!("analysis = \"{word}\"")))
 }
 
-impl Placed {
+impl LocatedExpression {
     /// Its value at a time; an error where it is no finite number.
     ///
     /// # Errors
@@ -233,8 +233,8 @@ impl Planner<'_> {
         })
     }
 
-    fn placed_in_time(&self, value: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
-        Ok(Placed { expression: self.reader.expression(value, dimension, &["t"])?, key: self.key(value) })
+    fn placed_in_time(&self, value: &Value, dimension: [i32; 3]) -> Result<LocatedExpression, CaseError> {
+        Ok(LocatedExpression { expression: self.reader.expression(value, dimension, &["t"])?, key: self.key(value) })
     }
 
     fn path_end(&self, end: &PathEnd) -> Result<PlannedEnd, CaseError> {
@@ -246,7 +246,7 @@ impl Planner<'_> {
             PathEnd::Space(values) => {
                 let list = values.iter().map(|v| self.placed_in_time(v, LENGTH)).collect::<Result<Vec<_>, _>>()?;
                 let found = list.len();
-                let list: [Placed; 3] = list.try_into().map_err(|_| {
+                let list: [LocatedExpression; 3] = list.try_into().map_err(|_| {
                     self.problem.error(values, format!("a point in space has 3 coordinates, found {found}"))
                 })?;
                 Ok(PlannedEnd::Space(list))

@@ -1,6 +1,6 @@
 //! Values in the context of one problem: units, constants and functions.
 
-use super::placed::Placed;
+use super::located::LocatedExpression;
 use super::reader::Reader;
 use crate::expression::{Definition, Names};
 use crate::problem::units::Units;
@@ -199,8 +199,8 @@ impl<'a> Planner<'a> {
         self.problem.key(part)
     }
 
-    pub(crate) fn placed(&self, value: &Value, dimension: [i32; 3]) -> Result<Placed, CaseError> {
+    pub(crate) fn placed(&self, value: &Value, dimension: [i32; 3]) -> Result<LocatedExpression, CaseError> {
         let expression = self.reader.expression(value, dimension, coordinates(self.space))?;
-        Ok(Placed { expression, key: self.key(value) })
+        Ok(LocatedExpression { expression, key: self.key(value) })
     }
 }

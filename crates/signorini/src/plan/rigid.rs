@@ -1,13 +1,13 @@
 //! Rigid bodies that solids press on: the gap to them and their outward normal, anywhere and at any time.
 
-use super::placed::Placed;
+use super::located::LocatedExpression;
 use super::placement::PlacementKeys;
 use super::planner::Planner;
 use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
 use crate::problem::{CaseError, List, Location, Problem, Value};
-use crate::problem::{Cylinder, Ellipsoid, Motion, Rigid, Shape, Side, Space, Stance};
+use crate::problem::{Cylinder, Ellipsoid, Motion, Placement, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
 use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
@@ -27,9 +27,9 @@ pub struct RigidBody {
     shape: Arc<dyn RigidShape>,
     inside: bool,
     /// Displacement along x, y, z as expressions of time; empty for a body at rest.
-    pub displacement: Vec<Placed>,
+    pub displacement: Vec<LocatedExpression>,
     /// Rotation vector in radians, about the centre of the shape.
-    pub rotation: Vec<Placed>,
+    pub rotation: Vec<LocatedExpression>,
     /// The box of the shape where it is stated; none of one without an end.
     pub bounds: Option<Aabb<3>>,
 }
@@ -55,7 +55,12 @@ impl RigidShape for Hole {
 impl RigidBody {
     /// A body of a shape that is touched from outside.
     #[doc(hidden)]
-    pub fn new(name: &str, shape: Arc<dyn RigidShape>, displacement: Vec<Placed>, rotation: Vec<Placed>) -> Self {
+    pub fn new(
+        name: &str,
+        shape: Arc<dyn RigidShape>,
+        displacement: Vec<LocatedExpression>,
+        rotation: Vec<LocatedExpression>,
+    ) -> Self {
         Self { name: name.into(), shape, inside: false, displacement, rotation, bounds: None }
     }
 
@@ -65,8 +70,8 @@ impl RigidBody {
     }
 
     /// Displacement and rotation vector at a time, each value by `evaluate`.
-    pub fn motion_by(&self, evaluate: &dyn Fn(&Placed) -> f64) -> RigidMotion {
-        let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, evaluate));
+    pub fn motion_by(&self, evaluate: &dyn Fn(&LocatedExpression) -> f64) -> RigidMotion {
+        let vector = |list: &[LocatedExpression]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, evaluate));
         let rotation =
             if let [angle] = &self.rotation[..] { Vector::<3>::z() * evaluate(angle) } else { vector(&self.rotation) };
         RigidMotion::new(rotation, self.shape.centre(), vector(&self.displacement))
@@ -93,12 +98,12 @@ impl RigidBody {
 
     /// Displacement and rotation vector at a time; an error where the motion is not a number.
     fn motion_at(&self, problem: &Problem, time: f64) -> Result<[Vector<3>; 2], CaseError> {
-        let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
+        let at = |p: &LocatedExpression| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
         if let Some(p) = self.displacement.iter().chain(&self.rotation).find(|p| !at(p).is_finite()) {
             let message = format!("`{}` is {} at t = {time}: not a finite number", p.key, at(p));
             return Err(problem.error(&p.key, message));
         }
-        let vector = |list: &[Placed]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, at));
+        let vector = |list: &[LocatedExpression]| Vector::<3>::from_fn(|k, _| list.get(k).map_or(0.0, at));
         // In the plane the one rotation there is turns about the axis across it.
         let rotation =
             if let [angle] = &self.rotation[..] { Vector::<3>::z() * at(angle) } else { vector(&self.rotation) };
@@ -241,7 +246,8 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
 
     /// Shapes round an axis are shapes in space, which in the plane can be that of an axisymmetric problem.
     fn check_round(&self, shape: &Shape) -> Result<(), CaseError> {
-        let Some(Stance { noun: what, place, axis: Some(axis), .. }) = shape.closed_form().map(|shape| shape.stance())
+        let Some(Placement { noun: what, place, axis: Some(axis), .. }) =
+            shape.closed_form().map(|shape| shape.placement())
         else {
             return Ok(());
         };
@@ -386,7 +392,7 @@ pub(super) fn smooth_body<const D: usize>(
 }
 
 /// How a rigid body moves: displacement and rotation, each empty for one at rest.
-fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<Placed>; 2], CaseError> {
+fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<LocatedExpression>; 2], CaseError> {
     let problem = planner.problem;
     let (mut displacement, mut rotation) = (Vec::new(), Vec::new());
     match &rigid.motion {
@@ -403,8 +409,10 @@ fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<P
                         .help("in the plane [angle], in space a rotation vector, in radians"));
                 }
                 for v in values {
-                    rotation
-                        .push(Placed { expression: planner.reader.expression(v, NONE, &["t"])?, key: planner.key(v) });
+                    rotation.push(LocatedExpression {
+                        expression: planner.reader.expression(v, NONE, &["t"])?,
+                        key: planner.key(v),
+                    });
                 }
             }
             if let Some(values) = &motion.displacement {
@@ -413,7 +421,7 @@ fn motion<const D: usize>(planner: &Planner<'_>, rigid: &Rigid) -> Result<[Vec<P
                     return Err(problem.error(values, format!("expected {D} components, found {found}")));
                 }
                 for v in values {
-                    displacement.push(Placed {
+                    displacement.push(LocatedExpression {
                         expression: planner.reader.expression(v, LENGTH, &["t"])?,
                         key: planner.key(v),
                     });

@@ -70,7 +70,7 @@ pub(super) fn read(
     shape: &Shape,
 ) -> Result<Option<(Arc<dyn RigidShape>, &'static str)>, CaseError> {
     let Some(stated) = shape.closed_form() else { return Ok(None) };
-    Ok(Some((stated.read(&Reader(keys), shape)?, stated.stance().name)))
+    Ok(Some((stated.read(&Reader(keys), shape)?, stated.placement().name)))
 }
 
 /// The spline through the points of a table.

@@ -1,11 +1,11 @@
 //! The surfaces that a membrane may touch: heights, on which side of it they lie, and how they move.
 
 use super::height::view;
-use super::placed::{Placed, field};
+use super::located::{LocatedExpression, field};
 use super::planner::{Planner, coordinates};
 use crate::expression::{Expression, Scope};
 use crate::problem::units::{LENGTH, NONE};
-use crate::problem::{self, List, Looks, Motion, Rigid, Shape, Space};
+use crate::problem::{self, List, Motion, Orientation, Rigid, Shape, Space};
 use crate::problem::{CaseError, Part, Value};
 use crate::relief::{LevelSetTop, Sampled};
 use crate::report::Warning;
@@ -21,11 +21,11 @@ pub struct Contact {
     pub name: String,
     pub body: String,
     pub side: Side,
-    pub height: Placed,
+    pub height: LocatedExpression,
     /// Displacement along x, y, z as expressions of time; empty for a body at rest.
-    pub displacement: Vec<Placed>,
+    pub displacement: Vec<LocatedExpression>,
     /// Energy of adhesion per area, where it is sticky.
-    pub adhesion: Option<Placed>,
+    pub adhesion: Option<LocatedExpression>,
 }
 
 impl Contact {
@@ -42,7 +42,7 @@ impl Contact {
 
     /// The displacement at a time.
     pub fn displacement_at(&self, time: f64) -> [f64; 3] {
-        let at = |p: &Placed| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
+        let at = |p: &LocatedExpression| p.expression.evaluate(&Scope { position: [f64::NAN; 3], time });
         match self.displacement.as_slice() {
             [x, y, z] => [at(x), at(y), at(z)],
             _ => [0.0; 3],
@@ -75,7 +75,7 @@ pub(super) fn read(
             .help("for a body above the membrane:  side = \"above\""));
     }
     let displacement = motion(planner, rigid)?;
-    let still = Placed { expression: Expression::number(0.0), key: planner.key(&rigid.shape) };
+    let still = LocatedExpression { expression: Expression::number(0.0), key: planner.key(&rigid.shape) };
     let mut contact = Contact {
         name: name.to_string(),
         body: body.to_string(),
@@ -110,22 +110,27 @@ fn side(planner: &Planner<'_>, rigid: &Rigid, level: Option<f64>) -> Result<Side
         let z = last(values, LENGTH)?;
         Ok(if level.is_some_and(|level| z > level) { Side::Above } else { Side::Below })
     };
-    let Some(stance) = rigid.shape.closed_form().map(|shape| shape.stance()) else { return Ok(Side::Below) };
-    match (stance.looks, stance.place) {
-        (Looks::Along(direction, sign), _) => Ok(by_sign(sign * last(direction, NONE)?)),
-        (Looks::Round(_), Some(place)) => by_centre(place),
+    let Some(placement) = rigid.shape.closed_form().map(|shape| shape.placement()) else { return Ok(Side::Below) };
+    match (placement.orientation, placement.place) {
+        (Orientation::Along(direction, sign), _) => Ok(by_sign(sign * last(direction, NONE)?)),
+        (Orientation::Round(_), Some(place)) => by_centre(place),
         _ => Ok(Side::Below),
     }
 }
 
 /// The height of a body as seen from the membrane.
-fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_>) -> Result<Placed, CaseError> {
+fn height(
+    planner: &Planner<'_>,
+    rigid: &Rigid,
+    side: Side,
+    scene: &mut Scene<'_>,
+) -> Result<LocatedExpression, CaseError> {
     let problem = planner.problem;
     let view = view(side);
     let placed = |expression, shape: &str| {
         let mut key = planner.key(&rigid.shape);
         key.0.push(Part::Key(shape.into()));
-        Placed { expression, key }
+        LocatedExpression { expression, key }
     };
     match &rigid.shape {
         Shape::Height(value) => {
@@ -179,7 +184,7 @@ fn height(planner: &Planner<'_>, rigid: &Rigid, side: Side, scene: &mut Scene<'_
 }
 
 /// How a body moves: expressions along x, y and z, or none for one at rest.
-fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError> {
+fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<LocatedExpression>, CaseError> {
     let problem = planner.problem;
     let mut displacement = Vec::new();
     let motion = match &rigid.motion {
@@ -199,7 +204,7 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
     let Some(values) = &motion.displacement else { return Ok(displacement) };
     for v in values {
         let expression = planner.reader.expression(v, LENGTH, &["t"])?;
-        displacement.push(Placed { expression, key: planner.key(v) });
+        displacement.push(LocatedExpression { expression, key: planner.key(v) });
     }
     if planner.space != Space::Plane && displacement.len() == 2 {
         let mut still = displacement[0].clone();
@@ -209,7 +214,7 @@ fn motion(planner: &Planner<'_>, rigid: &Rigid) -> Result<Vec<Placed>, CaseError
     if displacement.len() != 3 {
         return Err(problem.error(values, format!("expected 3 components, found {}", values.len())));
     }
-    let sideways = |p: &Placed| p.expression.constant() != Some(0.0);
+    let sideways = |p: &LocatedExpression| p.expression.constant() != Some(0.0);
     if planner.space == Space::Axisymmetric && displacement[..2].iter().any(sideways) {
         return Err(problem.error(values, "in an axisymmetric problem a body can move along z only"));
     }

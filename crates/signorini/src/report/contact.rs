@@ -21,7 +21,7 @@ pub struct ContactReport {
     pub force_bounds: Option<ForceBounds>,
     /// Kind of contact forces. It determines the meaning of `area` and the unit of pressures.
     #[serde(default)]
-    pub carries: Carried,
+    pub carries: TractionKind,
     /// Contact area. A length for a string, in the plane, and for `carries = "line_load"`.
     pub area: f64,
     /// Number of connected contact zones.
@@ -96,7 +96,7 @@ pub struct ForceBounds {
 /// Kind of contact forces: the meaning of `area` and the unit of pressures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Carried {
+pub enum TractionKind {
     /// Contact pressure, a force per area of a surface; per length of a line in the plane.
     #[default]
     Pressure,
@@ -106,7 +106,7 @@ pub enum Carried {
     Force,
 }
 
-impl Carried {
+impl TractionKind {
     /// The units of extent and largest pressure.
     pub fn units(self, names: &UnitNames) -> [&str; 2] {
         match self {

@@ -13,7 +13,7 @@ pub mod words;
 use crate::plan::reader::Interpreted;
 use crate::problem::Space;
 use crate::problem::units::{self, Units};
-pub use contact::{Carried, Component, ContactReport, ErrorEstimate, ForceBounds, OtherState, RopeLimits};
+pub use contact::{Component, ContactReport, ErrorEstimate, ForceBounds, OtherState, RopeLimits, TractionKind};
 pub use paths::*;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;

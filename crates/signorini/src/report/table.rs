@@ -1,6 +1,6 @@
 //! The summary as text: the table of the terminal, and the history as CSV.
 
-use super::{Carried, ContactReport, ErrorEstimate, ForceBounds, StepReport, Summary, UnitNames, signed_size};
+use super::{ContactReport, ErrorEstimate, ForceBounds, StepReport, Summary, TractionKind, UnitNames, signed_size};
 use crate::output::figure::{figure, told_vector};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -39,7 +39,7 @@ pub fn columns(summary: &Summary) -> Vec<Column> {
     type Line<'a> = (&'a StepReport, Option<(&'a str, &'a ContactReport)>);
     type Cell = fn(&StepReport, Option<(&str, &ContactReport)>) -> Option<String>;
     /// The unit of the figures of a contact, or of all of them.
-    type Unit = fn(&UnitNames, Carried) -> &str;
+    type Unit = fn(&UnitNames, TractionKind) -> &str;
     let columns: [(&str, Unit, Cell); 11] = [
         ("t", |_, _| "", |s, _| Some(format!("{:.6}", s.time))),
         ("solves", |_, _| "", |s, _| Some(s.solves().to_string())),
@@ -63,7 +63,7 @@ pub fn columns(summary: &Summary) -> Vec<Column> {
     ];
     let several = summary.steps.iter().any(|s| s.contacts.len() > 1);
     let mut found = Vec::new();
-    let carried = |line: &Line| line.1.map_or(Carried::Pressure, |(_, c)| c.carries);
+    let carried = |line: &Line| line.1.map_or(TractionKind::Pressure, |(_, c)| c.carries);
     for (title, unit, cell) in columns {
         let cells: Vec<Option<String>> = lines.iter().map(|(s, c)| cell(s, *c)).collect();
         if cells.iter().all(Option::is_none) || (title == "contact" && !several) {
@@ -76,7 +76,7 @@ pub fn columns(summary: &Summary) -> Vec<Column> {
         let behind = |unit: &str| if shared.is_some() || unit.is_empty() { String::new() } else { format!(" {unit}") };
         let written = |(text, unit): (Option<String>, &&str)| text.map_or("-".into(), |text| text + &behind(unit));
         let cells: Vec<String> = cells.into_iter().zip(&units).map(written).collect();
-        let title = match (title, lines.iter().all(|line| carried(line) == Carried::LineLoad)) {
+        let title = match (title, lines.iter().all(|line| carried(line) == TractionKind::LineLoad)) {
             ("area", true) => "length",
             ("max pressure", true) => "max line load",
             (title, _) => title,
@@ -204,7 +204,7 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
         }
         type Reading = fn(&ContactReport) -> Option<f64>;
         let (force, length) = (unit(|u| &u.force), unit(|u| &u.length));
-        let carries = steps.iter().find_map(of).map_or(Carried::Pressure, |c| c.carries);
+        let carries = steps.iter().find_map(of).map_or(TractionKind::Pressure, |c| c.carries);
         let [area, pressure] = units.map_or([""; 2], |u| carries.units(u));
         let readings: [(&str, &str, Reading); 12] = [
             ("area", area, |c| Some(c.area)),

@@ -1,6 +1,6 @@
 //! The words of the summary: its schema, its keys and what they mean, from the types.
 
-use super::{Carried, EventKind, LocatedBy, PathEventKind, Reason, RopeCondition, Summary, WarningKind};
+use super::{EventKind, LocatedBy, PathEventKind, Reason, RopeCondition, Summary, TractionKind, WarningKind};
 use crate::case::schema::{Key, keys_of};
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ pub fn words() -> Vec<Word> {
         .chain(of("warning", schemars::schema_for!(WarningKind)))
         .chain(of("event of a path", schemars::schema_for!(PathEventKind)))
         .chain(of("condition of a rope", schemars::schema_for!(RopeCondition)))
-        .chain(of("kind of contact forces", schemars::schema_for!(Carried)))
+        .chain(of("kind of contact forces", schemars::schema_for!(TractionKind)))
         .chain(of("way to locate an event", schemars::schema_for!(LocatedBy)))
         .collect()
 }

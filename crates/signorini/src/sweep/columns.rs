@@ -1,6 +1,6 @@
 //! Units of the numbers of a summary, by the last keys of their paths.
 
-use crate::report::{Carried, UnitNames};
+use crate::report::{TractionKind, UnitNames};
 use serde_json::Value;
 
 /// The unit of a number in a summary; empty where it has none.
@@ -44,8 +44,8 @@ pub fn unit(summary: &Value, path: &str) -> String {
 }
 
 /// What the contact of a path carries.
-fn carried(summary: &Value, path: &str) -> Carried {
-    let Some(rest) = path.split_once("contacts.").map(|(_, rest)| rest) else { return Carried::Pressure };
+fn carried(summary: &Value, path: &str) -> TractionKind {
+    let Some(rest) = path.split_once("contacts.").map(|(_, rest)| rest) else { return TractionKind::Pressure };
     let steps = summary["steps"].as_array().into_iter().flatten();
     let contacts = steps.filter_map(|step| step["contacts"].as_object()).flatten();
     let contact = contacts.filter(|(name, _)| rest.starts_with(&format!("{name}."))).max_by_key(|(name, _)| name.len());

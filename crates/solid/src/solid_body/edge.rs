@@ -22,7 +22,7 @@ use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::curve::{Closure, Continuity, Curve, CurvePoint};
 use signorini_mechanics::pair::axis;
-use signorini_mechanics::{Foot, Function, Placed, Sampling, Site};
+use signorini_mechanics::{Foot, Function, Sampling, Site, SlavePoint};
 use std::collections::BTreeMap;
 
 /// An edge as it is stated: where two surfaces meet, by their groups, and the radius of its rounding, 0 if it is sharp.
@@ -233,12 +233,12 @@ impl EdgeCurve {
         }
     }
 
-    pub(super) fn placed(&self, element: usize, site: &Site, u: &[f64]) -> Placed {
+    pub(super) fn placed(&self, element: usize, site: &Site, u: &[f64]) -> SlavePoint {
         let jet = self.jet(element, site.xi[0], u);
         let (section, _, list) = self.section(element, site.xi[0], u);
         let spin_bends = list.iter().flat_map(|t| list.iter().map(|l| section.bend(&t.change, &l.change))).collect();
         let (spin, frame) = self.spin(element, site.xi[0], u);
-        Placed {
+        SlavePoint {
             x: jet.x,
             tangent: Some(jet.d1),
             radius: self.radius,
@@ -246,7 +246,7 @@ impl EdgeCurve {
             spin,
             spin_bends,
             frame,
-            ..Placed::default()
+            ..SlavePoint::default()
         }
     }
 

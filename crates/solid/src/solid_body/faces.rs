@@ -8,7 +8,7 @@ use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::{Matrix, Point, Vector};
-use signorini_mechanics::{Bend, Direction, Function, NormalField, Placed, Sampling, Site};
+use signorini_mechanics::{Direction, Function, NormalField, Sampling, SecondDerivative, Site, SlavePoint};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -244,7 +244,9 @@ impl<const D: usize> Faces<D> {
                 slopes: slopes.map(|s| f.value * s),
                 ..Function::default()
             }));
-            out.bends.extend(direction.bends.iter().map(|b| Bend { unknowns: b.unknowns, value: b.value * value }));
+            out.bends.extend(
+                direction.bends.iter().map(|b| SecondDerivative { unknowns: b.unknowns, value: b.value * value }),
+            );
         }
         merge(&mut out.functions);
         out
@@ -278,7 +280,7 @@ impl<const D: usize> Faces<D> {
                         let size = share * (s[0] * t[1] - t[0] * s[1]);
                         for (i, j) in [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)] {
                             let unknowns = [3 * f + i as u32, 3 * g + j as u32];
-                            out.bends.push(Bend { unknowns, value: axis(i).cross(&axis(j)) * size });
+                            out.bends.push(SecondDerivative { unknowns, value: axis(i).cross(&axis(j)) * size });
                         }
                     }
                 }
@@ -406,7 +408,7 @@ impl<const D: usize> Faces<D> {
         point.around.iter().map(of).sum::<Vector<3>>().normalize()
     }
 
-    pub fn placed(&self, site: &Site, u: &[f64]) -> Placed {
+    pub fn placed(&self, site: &Site, u: &[f64]) -> SlavePoint {
         let point = self.point(site);
         let mut x = point.x;
         let mut functions = Vec::with_capacity(D * point.functions.len());
@@ -417,13 +419,13 @@ impl<const D: usize> Faces<D> {
                 functions.push(Function { unknown, value: axis(i) * *v, ..Function::default() });
             }
         }
-        Placed {
+        SlavePoint {
             x: spatial(&x),
             outward: Some(self.outward(site, u)),
             averaged: Some(Self::direction(&point.averaged, u)),
             functions,
             frame: Matrix::<3>::identity(),
-            ..Placed::default()
+            ..SlavePoint::default()
         }
     }
 }

@@ -42,8 +42,8 @@ impl<const D: usize> SolidBody<D> {
             for i in (0..D).filter(|&i| hold.displacement[i].is_some()) {
                 let unknown = D as u32 * f + i as u32;
                 let value = wanted.get(&f).map_or(0.0, |c| c[i]);
-                let (terms, lack) = (vec![(unknown, 1.0)], u[unknown as usize] - value);
-                out.push(Constraint { terms, lack, reaction: reaction(f, axis(i)) });
+                let (terms, violation) = (vec![(unknown, 1.0)], u[unknown as usize] - value);
+                out.push(Constraint { terms, violation, reaction: reaction(f, axis(i)) });
             }
         }
         if let Some((n, field)) = &hold.along {
@@ -52,9 +52,9 @@ impl<const D: usize> SolidBody<D> {
             for &f in &all {
                 let own = |i: usize| (D as u32 * f + i as u32, n[i]);
                 let terms: Vec<(u32, f64)> = (0..D).map(own).filter(|t| t.1 != 0.0).collect();
-                let lack = direction
+                let violation = direction
                     .dot(&(Self::coefficients(u, f) - wanted.get(&f).copied().unwrap_or_else(Point::<D>::zeros)));
-                out.push(Constraint { terms, lack, reaction: reaction(f, *n) });
+                out.push(Constraint { terms, violation, reaction: reaction(f, *n) });
             }
         }
         let first = all.iter().copied().find(|f| is_vertex[*f as usize]);
@@ -65,8 +65,8 @@ impl<const D: usize> SolidBody<D> {
                     [Some(f), first.filter(|_| is_vertex[f as usize])].map(|f| f.map(|f| D as u32 * f + i as u32));
                 let ends = own.into_iter().zip([1.0]).chain(other.into_iter().zip([-1.0]));
                 let terms: Vec<(u32, f64)> = ends.collect();
-                let lack = terms.iter().map(|(k, s)| s * u[*k as usize]).sum();
-                out.push(Constraint { terms, lack, reaction: [Vector::<3>::zeros(); 2] });
+                let violation = terms.iter().map(|(k, s)| s * u[*k as usize]).sum();
+                out.push(Constraint { terms, violation, reaction: [Vector::<3>::zeros(); 2] });
             }
         }
         Ok(out)

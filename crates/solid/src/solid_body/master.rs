@@ -14,7 +14,9 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
 use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
-use signorini_mechanics::{Anchor, Direction, Foot, Function, Master, MaterialPoint, Met, NormalField, Site};
+use signorini_mechanics::{
+    Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, NormalField, Site,
+};
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
@@ -249,7 +251,7 @@ impl<const D: usize> SurfaceMaster<'_, D> {
 }
 
 impl<const D: usize> Master for SurfaceMaster<'_, D> {
-    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<Met> {
+    fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<MasterProjection> {
         let own = except.map(|site| self.own(site));
         let point = Shape::Point(*x);
         let limit = reach * reach;
@@ -277,14 +279,14 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
         });
         let (k, found) = best?;
         let feature = found.closest.b.feature.kind;
-        Some(Met::Foot(Box::new(self.foot(k, coordinates(&found), x, feature))))
+        Some(MasterProjection::Foot(Box::new(self.foot(k, coordinates(&found), x, feature))))
     }
 
     fn is_faceted(&self) -> bool {
         true
     }
 
-    fn cut(&self, x: &Point<3>, direction: &Vector<3>, reach: f64) -> Option<Met> {
+    fn cut(&self, x: &Point<3>, direction: &Vector<3>, reach: f64) -> Option<MasterProjection> {
         let direction = direction.normalize();
         let limit = reach * reach;
         let mut best: Option<(f64, usize, Local)> = None;
@@ -300,10 +302,10 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
             now
         });
         let (_, k, s) = best?;
-        Some(Met::Cut(Box::new(self.foot(k, s, x, FeatureKind::Interior))))
+        Some(MasterProjection::Cut(Box::new(self.foot(k, s, x, FeatureKind::Interior))))
     }
 
-    fn along(&self, x: &Point<3>, reach: f64) -> Option<Met> {
+    fn along(&self, x: &Point<3>, reach: f64) -> Option<MasterProjection> {
         let mut best: Option<(f64, usize, Local, NormalField)> = None;
         self.bvh.nearest(x, reach * reach, |k| {
             let now = best.as_ref().map_or(reach, |(t, ..)| t.abs());
@@ -316,7 +318,7 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
             now * now
         });
         let (_, k, s, field) = best?;
-        Some(Met::Along(Box::new(self.foot(k, s, x, FeatureKind::Interior)), Box::new(field)))
+        Some(MasterProjection::Along(Box::new(self.foot(k, s, x, FeatureKind::Interior)), Box::new(field)))
     }
 
     fn at(&self, point: &MaterialPoint) -> Anchor {

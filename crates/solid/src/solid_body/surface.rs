@@ -9,7 +9,7 @@ use signorini_fem::Local;
 use signorini_geometry::Matrix;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::surface::Faces as AnyFaces;
-use signorini_mechanics::{Direction, Function, Placed};
+use signorini_mechanics::{Direction, Function, SlavePoint};
 use std::any::Any;
 use std::sync::OnceLock;
 
@@ -57,7 +57,7 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
         &self.corners.get_or_init(all)[face]
     }
 
-    fn placed(&self, face: usize, s: &Local) -> Placed {
+    fn placed(&self, face: usize, s: &Local) -> SlavePoint {
         let number = self.surface.faces[face];
         let list = self.faces.slopes(number, s);
         let at = self.faces.current(number, s, &list, self.u);
@@ -68,12 +68,12 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
                 moved.push(Function { unknown, value: axis(i) * d[0], ..Function::default() });
             }
         }
-        Placed {
+        SlavePoint {
             x: spatial(&at.x),
             outward: Some(spatial(&at.area_normal().normalize())),
             functions: moved,
             frame: Matrix::<3>::identity(),
-            ..Placed::default()
+            ..SlavePoint::default()
         }
     }
 

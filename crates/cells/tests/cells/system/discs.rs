@@ -1,10 +1,10 @@
 //! Contact by discs: balance, tangent, and the pore that closes on itself.
 
 use super::*;
-use signorini_cells::disc_contact::{Centres, Cover, CoverFindings, DiscPairs};
+use signorini_cells::disc_contact::{Centres, CoverFindings, DiscCovering, DiscPairs};
 use signorini_cells::shapes::{Ellipsoid, ball};
 
-const COVER: Cover = Cover { radius: None, spacing: None, centres: Centres::Within };
+const COVER: DiscCovering = DiscCovering { radius: None, spacing: None, centres: Centres::Within };
 
 /// Two balls of cells, or two discs, pressed on each other.
 fn pressed<const D: usize>(space: Space) -> (System, SystemState, IncrementResult, Vec<CoverFindings>) {
@@ -79,7 +79,7 @@ fn a_radius_that_cannot_serve_is_told() {
         Vec::new(),
     );
     let of = |radius: f64, spacing: f64| {
-        let cover = Cover { radius: Some(radius), spacing: Some(spacing), ..COVER };
+        let cover = DiscCovering { radius: Some(radius), spacing: Some(spacing), ..COVER };
         DiscPairs::new("touch", (part(0, "boundary"), &body), None, &cover, None).unwrap().1[0]
     };
     let found = of(0.2, 0.2);
@@ -95,7 +95,7 @@ fn close(delta: f64, centres: Centres, radius: Option<f64>) -> (f64, IncrementRe
     let domain = Domain::Complement(Box::new(Domain::shape(pore)));
     let setup = Discretisation { refine_narrow: 2, ..Discretisation::of_degree(3) };
     let tree = CellTree::new(aabb([0.0, -1.0], [1.0, 1.0]), [8, 16]).unwrap();
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(domain), tree, setup, material(Space::PlaneStrain)).unwrap();
     let places = vec![
         ("left", Place::low(0)),
         ("below", Place::low(1)),
@@ -103,7 +103,7 @@ fn close(delta: f64, centres: Centres, radius: Option<f64>) -> (f64, IncrementRe
         ("pore", Place::boundary(|p| p.x[0] < 0.499)),
     ];
     let plate = CellSolid::new("plate", body, &named(places)).unwrap();
-    let cover = Cover { radius, spacing: Some(0.02), centres };
+    let cover = DiscCovering { radius, spacing: Some(0.02), centres };
     let (contact, _) = DiscPairs::new("pore", (part(0, "pore"), &plate), None, &cover, None).unwrap();
     let supports = vec![
         support(0, "left", [constant(0.0), None, None]),

@@ -83,7 +83,7 @@ fn fitted_points_are_those_in_the_material() {
     let tree = CellTree::new(image.bounds(), [2; 3]).unwrap();
     let bodies = [VolumePoints::InMaterial, VolumePoints::Fitted].map(|volume_points| {
         let setup = Discretisation { volume_points, ..Discretisation::of_degree(2) };
-        CellBody::new(region.clone(), tree.clone(), setup, stuff(Space::Solid)).unwrap()
+        CellBody::new(region.clone(), tree.clone(), setup, material(Space::Solid)).unwrap()
     });
     let [many, few] = &bodies;
     let points = |b: &CellBody<3>| b.cells().iter().map(|c| c.rule.volume.len()).max().unwrap();

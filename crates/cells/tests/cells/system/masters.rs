@@ -8,7 +8,7 @@ use signorini_contact::Coulomb;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rigid_shape::{Ellipsoid, Sphere};
 use signorini_rope::centreline::{Closure, Continuity};
-use signorini_rope::chain::{Chain, body::Rest};
+use signorini_rope::chain::{Chain, body::ReferenceLength};
 use signorini_rope::path::Path;
 use signorini_solid::{SolidBody, StressLaw};
 
@@ -158,7 +158,7 @@ fn tangents_and_balance_in_space() {
         &|| {
             let points: Vec<Point<3>> = (0..=6).map(|k| v(0.1 * (k as f64 - 3.0), 0.05, 0.01)).collect();
             let path = Path::points(&points, Closure::Open).unwrap().sample(6, Continuity::C0).unwrap();
-            let rope = Chain::new("rope", &path, 5.0, Rest::Pretension(0.3), 0.05).unwrap();
+            let rope = Chain::new("rope", &path, 5.0, ReferenceLength::Pretension(0.3), 0.05).unwrap();
             let lower = cap("lower", -1.0);
             pair(("", rope), ("skin", lower), Sampling::Nodes, PENALTY)
         },
@@ -287,8 +287,8 @@ fn elements_on_a_block_of_cells_press_evenly() {
     let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.0 };
     let half = Domain::shape(HalfSpace { point: Point::<2>::new(0.0, 0.37), normal: Vector::<2>::y() });
     let tree = CellTree::new(aabb([0.0, 0.0], [1.0, 0.5]), [2, 2]).unwrap();
-    let stuff = Stuff { elastic, modulus: None, space: Space::PlaneStrain };
-    let body = CellBody::new(Arc::new(half), tree, Discretisation::of_degree(2), stuff).unwrap();
+    let material = CellMaterial { elastic, modulus: None, space: Space::PlaneStrain };
+    let body = CellBody::new(Arc::new(half), tree, Discretisation::of_degree(2), material).unwrap();
     let places = named(vec![("base", Place::low(1)), ("left", Place::low(0))]);
     let lower = CellSolid::new("lower", body, &places).unwrap();
     let mesh = signorini_fem::block::block::<2>(&[vec![0.0, 0.5, 1.0], vec![0.37, 0.67]], 1, |x| x);
@@ -326,7 +326,7 @@ fn edges_and_corners_are_met() {
     let mesh = TriangleMesh::new((0..8).map(corner).collect(), &triangles).unwrap();
     let cells = CellTree::new(b, [3; 3]).unwrap();
     let facets = Arc::new(FacetBody::new(mesh).unwrap());
-    let facets = CellBody::new(facets, cells, Discretisation::of_degree(1), stuff(Space::Solid)).unwrap();
+    let facets = CellBody::new(facets, cells, Discretisation::of_degree(1), material(Space::Solid)).unwrap();
     assert!((facets.volume() - 1.35f64.powi(3)).abs() < 1e-12);
     let facets = CellSolid::new("facets", facets, &BTreeMap::new()).unwrap();
     for body in [smooth, facets] {
@@ -339,7 +339,7 @@ fn edges_and_corners_are_met() {
             (v(-0.9, 0.66, 0.1), 1, 0.2f64.hypot(0.01)),
             (v(0.64, 0.64, 0.6), 2, 0.01),
         ] {
-            let Some(Met::Foot(foot)) = master.nearest(&x, 1.0, None) else { panic!("{x}") };
+            let Some(MasterProjection::Foot(foot)) = master.nearest(&x, 1.0, None) else { panic!("{x}") };
             assert!(((foot.jet.x - x).norm() - distance).abs() < 1e-12 && foot.coordinates == coordinates, "{x}");
         }
         assert!(master.nearest(&v(3.0, 3.0, 3.0), 1.0, None).is_none());

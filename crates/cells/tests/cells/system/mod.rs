@@ -13,7 +13,7 @@ mod mixed;
 mod pores;
 
 use signorini_cells::{
-    CellBody, CellSolid, CellTree, CellsError, Discretisation, Domain, Elastic, Place, Region, Space, Stuff,
+    CellBody, CellMaterial, CellSolid, CellTree, CellsError, Discretisation, Domain, Elastic, Place, Region, Space,
 };
 use signorini_geometry::{Aabb, Point, Vector};
 use signorini_mechanics::*;
@@ -31,8 +31,8 @@ fn aabb<const D: usize>(low: [f64; D], high: [f64; D]) -> Aabb<D> {
     Aabb::new(Point::<D>::from(low), Point::<D>::from(high))
 }
 
-fn stuff<const D: usize>(space: Space) -> Stuff<D> {
-    Stuff { elastic: ELASTIC, modulus: None, space }
+fn material<const D: usize>(space: Space) -> CellMaterial<D> {
+    CellMaterial { elastic: ELASTIC, modulus: None, space }
 }
 
 fn cells<const D: usize>(
@@ -42,7 +42,12 @@ fn cells<const D: usize>(
     space: Space,
 ) -> Result<CellBody<D>, CellsError> {
     let region: Arc<dyn Region<D>> = Arc::new(domain);
-    CellBody::new(region, tree, Discretisation { fictitious: 1e-12, ..Discretisation::of_degree(degree) }, stuff(space))
+    CellBody::new(
+        region,
+        tree,
+        Discretisation { fictitious: 1e-12, ..Discretisation::of_degree(degree) },
+        material(space),
+    )
 }
 
 fn named<const D: usize>(list: Vec<(&str, Place<D>)>) -> BTreeMap<String, Place<D>> {

@@ -23,7 +23,7 @@ fn close(
     let tree = CellTree::new(aabb([0.0, -1.0], [1.0, 1.0]), [5, 9]).unwrap();
     let setup = Discretisation { refine_narrow: 2, ..Discretisation::of_degree(4) };
     let domain = Domain::Complement(Box::new(Domain::shape(pore)));
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(space)).unwrap();
+    let body = CellBody::new(Arc::new(domain), tree, setup, material(space)).unwrap();
     let places = named(vec![("axis", Place::low(0)), ("top", Place::high(1)), ("base", Place::low(1))]);
     let body = CellSolid::new("plate", body, &places).unwrap();
     let itself = part(0, "boundary");

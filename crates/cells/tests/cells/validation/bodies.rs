@@ -1,7 +1,7 @@
 //! Bodies from images and surfaces, pores narrower than a cell, islands, and inputs that cannot be.
 
 use super::case::Case;
-use super::stuff;
+use super::material;
 use signorini_cells::facets::FacetBody;
 use signorini_cells::shapes::{Ellipsoid, Function, HalfSpace, ball};
 use signorini_cells::voxels::{ModulusImage, Voxels};
@@ -23,7 +23,7 @@ fn pore(cells: [usize; 2], degree: usize, pieces: Pieces, levels: usize) -> (f64
     let domain = Domain::Complement(Box::new(Domain::shape(pore)));
     let setup = Discretisation { pieces, refine_narrow: levels, ..Discretisation::of_degree(degree) };
     let tree = CellTree::new(b, cells).unwrap();
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(domain), tree, setup, material(Space::PlaneStrain)).unwrap();
     let case = Case::new(&body).symmetric(&[0]).component(Place::high(1), 1, -1.0).component(Place::low(1), 1, 1.0);
     (case.solve().unwrap().result.energy, body.unknowns(), body.findings().clone())
 }
@@ -81,7 +81,8 @@ fn the_image_of_a_ball() {
     let shape = voxels.above(0.5, 1.0).unwrap();
     let tree = CellTree::new(voxels.bounds(), [5; 3]).unwrap();
     let body =
-        CellBody::new(Arc::new(Domain::shape(shape)), tree, Discretisation::of_degree(1), stuff(Space::Solid)).unwrap();
+        CellBody::new(Arc::new(Domain::shape(shape)), tree, Discretisation::of_degree(1), material(Space::Solid))
+            .unwrap();
     // Smoothing by σ moves the surface inwards by σ²/R.
     let expected = radius - h * h / radius;
     let volume = (body.volume() / (4.0 / 3.0 * PI)).cbrt();
@@ -108,14 +109,14 @@ fn voxels_with_a_modulus_each() {
     let values: Vec<f64> = (0..4 * 6).map(|i| [1.0, 3.0, 1.0, 2.0, 0.5, 1.0][i / 4]).collect();
     let voxels = Voxels::new(Point::<2>::zeros(), [0.25, 0.5], [4, 6], values).unwrap();
     let image = ModulusImage::new(voxels).unwrap();
-    let stuff = Stuff {
+    let material = CellMaterial {
         elastic: Elastic { youngs_modulus: 2.0, poissons_ratio: 0.0 },
         modulus: Some(image.modulus()),
         space: Space::PlaneStress,
     };
     let b = Aabb::new(Point::<2>::zeros(), Point::<2>::new(1.0, 3.0));
     let setup = Discretisation { boundary: Boundary::Optional, ..Discretisation::of_degree(2) };
-    let body = CellBody::new(Arc::new(image), CellTree::new(b, [1, 6]).unwrap(), setup, stuff).unwrap();
+    let body = CellBody::new(Arc::new(image), CellTree::new(b, [1, 6]).unwrap(), setup, material).unwrap();
     let found = Case::new(&body).clamped(Place::low(1)).component(Place::high(1), 1, 1.0).solve().unwrap();
     let compliance: f64 = [1.0, 3.0, 1.0, 2.0, 0.5, 1.0].iter().map(|e| 0.5 / (2.0 * e)).sum();
     let force = found.result.support_forces[1][0][1];
@@ -170,7 +171,7 @@ fn a_body_of_facets_passes_the_patch_test() {
     let b = Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0));
     let setup = Discretisation { fictitious: 1e-10, ..Discretisation::of_degree(2) };
     let tree = CellTree::new(b, [4; 3]).unwrap();
-    let body = CellBody::new(Arc::new(FacetBody::new(mesh).unwrap()), tree, setup, stuff(Space::Solid)).unwrap();
+    let body = CellBody::new(Arc::new(FacetBody::new(mesh).unwrap()), tree, setup, material(Space::Solid)).unwrap();
     assert!((body.volume() / inside - 1.0).abs() < 1e-13, "{:e}", body.volume() / inside - 1.0);
     let exact = |x: &Point<3>| Vector::<3>::new(0.1 * x[0] + 0.2 * x[1], 0.3 * x[2] - 0.1 * x[1], 0.2 * x[0]);
     let u = Case::new(&body).held_at(Place::boundary(|_| true), exact).displacement();
@@ -186,7 +187,7 @@ fn inputs_that_cannot_be_are_told() {
         let mut setup = Discretisation::of_degree(2);
         change(&mut setup);
         let tree = CellTree::new(square(1.0), [4, 4]).unwrap();
-        CellBody::new(Arc::new(domain), tree, setup, stuff(Space::PlaneStrain))
+        CellBody::new(Arc::new(domain), tree, setup, material(Space::PlaneStrain))
     };
     let disc = |x: f64, r: f64| Domain::shape(ball(Point::<2>::new(x, 0.0), r));
     let same = |_: &mut Discretisation<2>| {};
@@ -229,7 +230,7 @@ fn slivers_without_fictitious_stiffness_do_no_harm() {
         let cut = Domain::shape(HalfSpace { point: Point::<2>::new(0.5 + depth, 0.0), normal: Vector::<2>::x() });
         let setup = Discretisation { fictitious, ..Discretisation::of_degree(5) };
         let tree = CellTree::new(square(1.0), [4, 4]).unwrap();
-        let body = CellBody::new(Arc::new(cut), tree, setup, stuff(Space::PlaneStrain)).unwrap();
+        let body = CellBody::new(Arc::new(cut), tree, setup, material(Space::PlaneStrain)).unwrap();
         let found = Case::new(&body).clamped(Place::low(0)).body_force(|_| Vector::<2>::x()).solve().unwrap();
         let at = |x: Point<2>| body.state_at(body.cell_at(&x).unwrap(), &x, found.displacement()).displacement;
         (found.result.energy, at(Point::<2>::new(0.49, 0.3)), at(Point::<2>::new(0.5 + 0.5 * depth, 0.3)))
@@ -256,7 +257,7 @@ fn combined_shapes_keep_their_edges() {
     let domain = Domain::intersection(vec![disc.without(hole), half(n, 0.0)]);
     let tree = CellTree::new(square(1.0), [5, 5]).unwrap();
     let setup = Discretisation { integration: Integration::Exact { points: Some(14) }, ..Discretisation::of_degree(3) };
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(domain), tree, setup, material(Space::PlaneStrain)).unwrap();
     let area = 0.5 * PI * (0.64 - 0.2025);
     let length = PI * (0.8 + 0.45) + 2.0 * 0.35;
     let sites = body.sites(&|_| true);

@@ -2,7 +2,7 @@
 //! tractions on the far sides.
 
 use super::case::Case;
-use super::{reference, stuff};
+use super::{material, reference};
 use nalgebra::Matrix3;
 use signorini_cells::shapes::ball;
 use signorini_cells::*;
@@ -74,7 +74,7 @@ fn block(n: usize, degree: usize, products: Products) -> CellBody<3> {
     let b = Aabb::new(Point::<3>::zeros(), Point::<3>::repeat(4.0));
     let domain = Domain::Complement(Box::new(Domain::shape(ball(Point::<3>::zeros(), 1.0))));
     let setup = Discretisation { fictitious: 1e-10, products, ..Discretisation::of_degree(degree) };
-    CellBody::new(Arc::new(domain), CellTree::new(b, [n; 3]).unwrap(), setup, stuff(Space::Solid)).unwrap()
+    CellBody::new(Arc::new(domain), CellTree::new(b, [n; 3]).unwrap(), setup, material(Space::Solid)).unwrap()
 }
 
 fn loaded(body: &CellBody<3>) -> Case<3> {
@@ -138,7 +138,7 @@ fn iterations_do_not_depend_on_small_cuts() {
             let domain = Domain::shape(signorini_cells::shapes::HalfSpace { point, normal });
             let setup = Discretisation::of_degree(p);
             let tree = CellTree::new(b, [3; 3]).unwrap();
-            let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
+            let body = CellBody::new(Arc::new(domain), tree, setup, material(Space::Solid)).unwrap();
             let case = Case::new(&body).clamped(Place::low(0));
             let (iterations, condition) = case.body_force(|x| Vector::<3>::new(1.0, x[0], 0.5)).iterations();
             println!("cut {depth:e}, degree {p}: {iterations} iterations, condition {condition:.1}");

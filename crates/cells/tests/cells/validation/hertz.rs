@@ -1,7 +1,7 @@
 //! A disc pressed between two rigid planes: a quarter of it. A ball: an eighth of it.
 
 use super::case::{Case, Tested};
-use super::{reference, stuff};
+use super::{material, reference};
 use signorini_cells::shapes::ball;
 use signorini_cells::*;
 use signorini_geometry::rigid_shape::{Cylinder, Plane};
@@ -58,7 +58,7 @@ fn press_refined(
         let leaf = tree.leaves()[tree.leaf_at(&end)];
         tree.refine(|l| *l == leaf || (l.bounds.clamp(&end) - end).norm() < 0.25 * l.size()).unwrap();
     }
-    let body = CellBody::new(Arc::new(disc), tree, setup, stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(disc), tree, setup, material(Space::PlaneStrain)).unwrap();
     let case = Case::new(&body).symmetric(&[0]).component(Place::high(1), 1, -delta);
     let on = Place::boundary(|p| p.normal[1] < -0.5);
     let found = case.touching(on, floor(Vector::<3>::y()), POINTS, enforcement).solve().unwrap();
@@ -192,7 +192,7 @@ fn newton_converges_quadratically_on_curved_bodies() {
     let b = Aabb::new(Point::<2>::zeros(), Point::<2>::new(1.0, 0.5));
     let slab = Domain::shape(shapes::HalfSpace { point: Point::<2>::new(0.0, 0.42), normal: Vector::<2>::y() });
     let tree = CellTree::new(b, [8, 4]).unwrap();
-    let body = CellBody::new(Arc::new(slab), tree, Discretisation::of_degree(3), stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(slab), tree, Discretisation::of_degree(3), material(Space::PlaneStrain)).unwrap();
     let disc = Cylinder { point: Point::<3>::new(0.52, 0.59, 0.0), axis: Vector::<3>::z(), radius: 0.2 };
     for enforcement in [Enforcement::Penalty { wanted_penetration: None }, Enforcement::Nitsche] {
         let case = Case::new(&body).clamped(Place::low(1));
@@ -215,7 +215,7 @@ fn press_ball(n: usize, degree: usize, delta: f64) -> (f64, usize, f64) {
     let tree = CellTree::new(b, [n; 3]).unwrap();
     let domain = Domain::shape(ball(Point::<3>::z(), 1.0));
     let setup = Discretisation::of_degree(degree);
-    let body = CellBody::new(Arc::new(domain), tree, setup, stuff(Space::Solid)).unwrap();
+    let body = CellBody::new(Arc::new(domain), tree, setup, material(Space::Solid)).unwrap();
     let case = Case::new(&body).symmetric(&[0, 1]).component(Place::high(2), 2, -delta);
     let on = Place::boundary(|p| p.normal[2] < -0.8);
     let found = case.touching(on, floor(Vector::<3>::z()), POINTS, Enforcement::Nitsche).solve().unwrap();
@@ -274,7 +274,7 @@ fn a_load_on_a_body_that_only_contact_holds() {
     let b = Aabb::new(Point::<2>::zeros(), Point::<2>::repeat(1.0));
     let disc = Domain::shape(ball(Point::<2>::y(), 1.0));
     let tree = CellTree::new(b, [6, 6]).unwrap();
-    let body = CellBody::new(Arc::new(disc), tree, Discretisation::of_degree(4), stuff(Space::PlaneStrain)).unwrap();
+    let body = CellBody::new(Arc::new(disc), tree, Discretisation::of_degree(4), material(Space::PlaneStrain)).unwrap();
     let case = Case::new(&body).symmetric(&[0]).traction(Place::high(1), |_| Vector::<2>::new(0.0, -0.01));
     assert_eq!(case.system().unheld().unwrap(), Some((0, "moving along y".into())));
     let on = Place::boundary(|p| p.normal[1] < -0.3);

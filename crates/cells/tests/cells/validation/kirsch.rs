@@ -1,7 +1,7 @@
 //! A quarter of a plate with a hole under tension (Kirsch 1898), with the exact tractions on the far sides.
 
 use super::case::Case;
-use super::{reference, stuff};
+use super::{material, reference};
 use signorini_cells::shapes::ball;
 use signorini_cells::*;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
@@ -32,7 +32,7 @@ pub fn plate(radius: f64, n: usize, setup: Discretisation<2>, space: Space) -> C
     let b = Aabb::new(Point::<2>::zeros(), Point::<2>::repeat(4.0));
     let hole = Domain::shape(ball(Point::<2>::zeros(), radius));
     let domain = Domain::Complement(Box::new(hole));
-    CellBody::new(Arc::new(domain), CellTree::new(b, [n, n]).unwrap(), setup, stuff(space)).unwrap()
+    CellBody::new(Arc::new(domain), CellTree::new(b, [n, n]).unwrap(), setup, material(space)).unwrap()
 }
 
 /// Symmetry on the near sides, exact tractions on the far ones.

@@ -7,13 +7,13 @@ mod hertz;
 mod kirsch;
 mod patch;
 
-use signorini_cells::{Elastic, Space, Stuff};
+use signorini_cells::{CellMaterial, Elastic, Space};
 
 /// The numbers of `tests/data/finite_cells.json`.
 fn reference() -> serde_json::Value {
     serde_json::from_str(include_str!("../../data/finite_cells.json")).unwrap()
 }
 
-fn stuff<const D: usize>(space: Space) -> Stuff<D> {
-    Stuff { elastic: Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 }, modulus: None, space }
+fn material<const D: usize>(space: Space) -> CellMaterial<D> {
+    CellMaterial { elastic: Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 }, modulus: None, space }
 }

@@ -2,7 +2,7 @@
 //! share that the fictitious stiffness has in the equations.
 
 use super::case::Case;
-use super::stuff;
+use super::material;
 use signorini_cells::shapes::HalfSpace;
 use signorini_cells::*;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
@@ -25,7 +25,7 @@ fn error<const D: usize>(normal: Vector<D>, at: f64, n: usize, degree: usize, cu
     let half = HalfSpace { point: normal * at, normal };
     let setup = Discretisation { fictitious: FICTITIOUS, ..Discretisation::of_degree(degree) };
     let tree = CellTree::new(b, [n; D]).unwrap();
-    let body = CellBody::new(Arc::new(Domain::shape(half)), tree, setup, stuff(space)).unwrap();
+    let body = CellBody::new(Arc::new(Domain::shape(half)), tree, setup, material(space)).unwrap();
     let gradient = Matrix::<D>::from_fn(|i, j| 0.3 - 0.1 * i as f64 + 0.25 * j as f64 - 0.2 * (i * j) as f64);
     let exact = move |x: &Point<D>| gradient * x + Vector::<D>::repeat(0.1);
     let mut case = Case::new(&body).held_at(Place::low(0), exact);
@@ -100,7 +100,7 @@ fn a_linear_field_around_an_axis() {
     let ball = signorini_cells::shapes::ball(Point::<2>::zeros(), 0.9);
     let setup = Discretisation { fictitious: 1e-12, ..Discretisation::of_degree(3) };
     let tree = CellTree::new(b, [4, 4]).unwrap();
-    let body = CellBody::new(Arc::new(Domain::shape(ball)), tree, setup, stuff(Space::Axisymmetric)).unwrap();
+    let body = CellBody::new(Arc::new(Domain::shape(ball)), tree, setup, material(Space::Axisymmetric)).unwrap();
     let volume = 2.0 / 3.0 * std::f64::consts::PI * 0.729;
     assert!((body.volume() / volume - 1.0).abs() < 1e-10, "{:e}", body.volume() / volume - 1.0);
     let u = Case::new(&body).symmetric(&[0, 1]).pressure(Place::boundary(|_| true), 2.0).displacement();

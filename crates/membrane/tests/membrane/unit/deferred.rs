@@ -6,7 +6,7 @@ use signorini_membrane::active_set::{NodalStart, solve_beside};
 use signorini_membrane::domain::{Domain, DomainOnCells, ImplicitDomain};
 use signorini_membrane::equilibrium::Elements;
 use signorini_membrane::field::{Constant, Formula, SharedField};
-use signorini_membrane::ils::{self, Reason, Rest, Start};
+use signorini_membrane::ils::{self, Reason, Start, StoppingRule};
 use signorini_membrane::obstacle::{Obstacle, Obstacles, Side};
 use signorini_membrane::plane_zone::PlaneZone;
 use signorini_membrane::problem::{Measure, Membrane, Support};
@@ -44,7 +44,8 @@ fn membrane() -> Membrane<2> {
 fn linear_elements_repeat_what_is_known() {
     let membrane = membrane();
     let mut elements = Elements::new(&membrane);
-    let found = ils::solve::<2, PlaneZone>(&membrane, &mut elements, Start::Free, Rest::Final, (0, 1.0), &mut Silent);
+    let found =
+        ils::solve::<2, PlaneZone>(&membrane, &mut elements, Start::Free, StoppingRule::Final, (0, 1.0), &mut Silent);
     assert_eq!(found.reason, Reason::Converged);
     let state = found.equilibrium.expect("a state");
     let known = Known { state: &state, zone: &found.zone };

@@ -1,6 +1,6 @@
 //! Of `history::seek`.
 
-use signorini_membrane::testing::{Control, PlannedIncrement, Seeker};
+use signorini_membrane::testing::{AreaController, Control, PlannedIncrement};
 
 fn planned(control: Control) -> PlannedIncrement {
     PlannedIncrement { step: 0, range: [0.0, 1.0], time: 1.0, control, events: None }
@@ -14,7 +14,7 @@ fn sought(from: f64, to: f64, of: impl Fn(f64) -> f64) -> (Result<f64, String>, 
         looks += 1;
         Some(of(t))
     };
-    let time = Seeker::begin(&planned, of(from), 1.0).advance(&planned, [from, of(from)], &mut area);
+    let time = AreaController::begin(&planned, of(from), 1.0).advance(&planned, [from, of(from)], &mut area);
     (time, looks)
 }
 
@@ -42,7 +42,7 @@ fn areas_that_are_not_there_are_told() {
 #[test]
 fn a_length_has_a_part_in_area_and_one_in_time() {
     let planned = planned(Control::ArcLength(0.1));
-    let mut seeker = Seeker::begin(&planned, 0.0, 1.0);
+    let mut seeker = AreaController::begin(&planned, 0.0, 1.0);
     let (mut at, mut times) = ([0.0, 0.0], Vec::new());
     while !seeker.done {
         let time = seeker.advance(&planned, at, &mut |t| Some(2.0 * t)).expect("a time");

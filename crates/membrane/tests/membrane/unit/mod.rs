@@ -11,5 +11,5 @@ mod multigrid_runs;
 mod plane_zone;
 mod published_level_set;
 mod raster;
-mod rest;
 mod sizing;
+mod stopping;

@@ -4,7 +4,7 @@ use signorini_contact::law::Status;
 use signorini_contact::{Coulomb, Law};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
-use signorini_mechanics::interaction::{Bodies, Interaction, Own, Target};
+use signorini_mechanics::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use signorini_mechanics::{Enforcement, SiteResult};
 use signorini_rope::curve_pair::contact::CurveContact;
 use signorini_solve::general::Entries;
@@ -38,9 +38,9 @@ pub fn act(
     let n = first[bodies.len()] as usize;
     let (mut residual, mut sizes, mut tangent) = (vec![0.0; n], vec![0.0; n], Entries::default());
     let at = Bodies { bodies, states, first: &first };
-    let own = Own { multipliers: &[], first: n as u32, prediction };
+    let own = InteractionUnknowns { multipliers: &[], first: n as u32, prediction };
     let room = (order == Order::Second).then_some(&mut tangent);
-    let mut target = Target { residual: &mut residual, sizes: &mut sizes, tangent: room };
+    let mut target = Assembler { residual: &mut residual, sizes: &mut sizes, tangent: room };
     assert_eq!(contact.add_to(at, own, &mut target).unwrap(), 0);
     let sites = contact.results(at, own).unwrap();
     Acted { residual, tangent, sites }
@@ -69,7 +69,7 @@ pub fn taylor(
     let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
     let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
     let first = first_unknowns(&all);
-    let own = Own { multipliers: &[], first: n as u32, prediction: &[] };
+    let own = InteractionUnknowns { multipliers: &[], first: n as u32, prediction: &[] };
     contact.accept(Bodies { bodies: &bodies, states: &start, first: &first }, own).unwrap();
     if let Enforcement::AugmentedLagrangian = enforcement {
         // Half of the forces as multipliers, and some friction.
@@ -114,7 +114,7 @@ pub fn predictions(contact: &CurveContact, bodies: &[Box<dyn Body>], states: &[B
     // Twice: a contact has a force that turns from its second iterate on.
     let mut prediction = contact.prediction();
     for _ in 0..2 {
-        let own = Own { multipliers: &[], first: n, prediction: &prediction };
+        let own = InteractionUnknowns { multipliers: &[], first: n, prediction: &prediction };
         prediction = contact.predict(at, own, &none, 1.0);
     }
     prediction
@@ -136,7 +136,7 @@ pub fn balance((bodies, mut contact): Touching, law: Option<Box<dyn Law>>) -> ([
     let first = first_unknowns(&all);
     let n = first[bodies.len()];
     let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
-    let own = Own { multipliers: &[], first: n, prediction: &[] };
+    let own = InteractionUnknowns { multipliers: &[], first: n, prediction: &[] };
     contact.accept(Bodies { bodies: &bodies, states: &start, first: &first }, own).unwrap();
     let noise: Vec<f64> = (0..n).map(|k| (0.7 + 1.3 * k as f64).sin()).collect();
     let states = advanced(&bodies, &start, &noise, 2e-3);

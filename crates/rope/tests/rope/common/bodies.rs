@@ -8,7 +8,7 @@ use signorini_rope::beam::Beam;
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{Closure, Continuity};
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::curve_pair::CurveContact;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
@@ -29,7 +29,7 @@ pub fn beam(name: &str, points: &[V], cells: usize, stiffness: Stiffness, radius
 
 pub fn cable(name: &str, points: &[V], cells: usize, radius: f64) -> Cable {
     let path = path(points).sample(cells, Continuity::C1).unwrap();
-    Cable::new(name, &path, 100.0, 1.0, Carries::TensionAndCompression, Rest::Path, radius).unwrap()
+    Cable::new(name, &path, 100.0, 1.0, Carries::TensionAndCompression, ReferenceLength::Path, radius).unwrap()
 }
 
 pub fn slender(bending: f64, stiff: f64) -> Stiffness {

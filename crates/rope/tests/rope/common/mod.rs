@@ -111,14 +111,15 @@ pub fn newton<S: Surroundings>(
         for (b, c) in around.hold(states) {
             let terms: Vec<_> = c.terms.iter().filter(|t| t.1 != 0.0).collect();
             assert_eq!(terms.len(), 1);
-            prescribed[(first[b] + terms[0].0) as usize] = Some(-c.lack / terms[0].1);
+            prescribed[(first[b] + terms[0].0) as usize] = Some(-c.violation / terms[0].1);
         }
         prescribed
     };
     let measure = |around: &S, states: &[BodyState]| {
         let out = assemble(around, states, Order::First);
         let free = held(around, states);
-        let r = (0..n).map(|k| free[k].map_or(out.forces[k], |lack| lack)).fold(0.0f64, |m, v| m.max(v.abs()));
+        let r =
+            (0..n).map(|k| free[k].map_or(out.forces[k], |violation| violation)).fold(0.0f64, |m, v| m.max(v.abs()));
         (r, out.forces)
     };
     let mut states = start.to_vec();

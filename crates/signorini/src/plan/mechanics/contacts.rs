@@ -1,11 +1,11 @@
 //! Contacts of a system: who may touch whom, tested where, kept how, with which friction.
 
-use super::{Kind, Numbers, Tested};
+use super::{ContactInfo, Kind, Numbers};
 use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE};
 use crate::problem::{self, AxisOn, CaseError, Components, CurveForm, Enforcement, Method, Value};
-use crate::report::Carried;
-use signorini_cells::disc_contact::{Centres, Cover, CoverFindings, DiscPairs};
+use crate::report::TractionKind;
+use signorini_cells::disc_contact::{Centres, CoverFindings, DiscCovering, DiscPairs};
 use signorini_geometry::Vector;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{
@@ -19,7 +19,7 @@ impl Planner<'_> {
         numbers: &Numbers,
         system: &mut System,
         kinds: &[Kind],
-    ) -> Result<(Vec<Box<dyn Interaction>>, Vec<Tested>), CaseError> {
+    ) -> Result<(Vec<Box<dyn Interaction>>, Vec<ContactInfo>), CaseError> {
         let problem = self.problem;
         let mut out = Vec::new();
         let mut told = Vec::new();
@@ -74,7 +74,7 @@ impl Planner<'_> {
         key: &problem::Contact,
         on: [&String; 2],
         (numbers, system, kinds): (&Numbers, &mut System, &[Kind]),
-    ) -> Result<(Box<dyn Interaction>, Tested), CaseError> {
+    ) -> Result<(Box<dyn Interaction>, ContactInfo), CaseError> {
         let problem = self.problem;
         let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
         let mut on = on;
@@ -163,13 +163,13 @@ impl Planner<'_> {
         let along_a_curve = matches!(kind, Kind::Curve { .. });
         let is_curve = self::is_curve(system, &slave);
         let carries = match kind {
-            Kind::Rigid { .. } => Carried::Force,
-            Kind::Curve { .. } => Carried::LineLoad,
-            _ if is_curve => Carried::LineLoad,
-            _ => Carried::Pressure,
+            Kind::Rigid { .. } => TractionKind::Force,
+            Kind::Curve { .. } => TractionKind::LineLoad,
+            _ if is_curve => TractionKind::LineLoad,
+            _ => TractionKind::Pressure,
         };
         let at_nodes = matches!(kind, Kind::Cells) && sampling == Sampling::Nodes;
-        let tested = Tested { along_a_curve, carries, at_nodes, ..Tested::by(method, contact.axis) };
+        let tested = ContactInfo { along_a_curve, carries, at_nodes, ..ContactInfo::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
     }
 
@@ -180,7 +180,7 @@ impl Planner<'_> {
         key: &problem::Contact,
         [slave, master]: [&Part; 2],
         system: &System,
-    ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
+    ) -> Result<Option<(Box<dyn Interaction>, ContactInfo)>, CaseError> {
         let curve = |p: &&Part| system.bodies[p.body].curve(p.group.as_deref());
         let curves = [slave, master].iter().all(|p| curve(p).is_some());
         if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
@@ -229,7 +229,7 @@ impl Planner<'_> {
                 .error(&at, "between curves the axis of friction is the tangent of the first curve")
                 .help("axis = \"tangent\", or leave it out"));
         }
-        Ok(Some((Box::new(contact), Tested { carries: Carried::Force, ..Tested::by("curve", axis) })))
+        Ok(Some((Box::new(contact), ContactInfo { carries: TractionKind::Force, ..ContactInfo::by("curve", axis) })))
     }
 
     /// Contact by discs on both surfaces.
@@ -240,7 +240,7 @@ impl Planner<'_> {
         stated: &problem::DiscMethod,
         [first, second]: [&Part; 2],
         system: &System,
-    ) -> Result<(Box<dyn Interaction>, Tested), CaseError> {
+    ) -> Result<(Box<dyn Interaction>, ContactInfo), CaseError> {
         let problem = self.problem;
         if let Some(friction) = &key.friction {
             return Err(problem
@@ -248,7 +248,7 @@ impl Planner<'_> {
                 .help("method.cell_surface = {} for contact with friction"));
         }
         let length = |value: &Option<Value>| value.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose();
-        let cover = Cover {
+        let cover = DiscCovering {
             radius: length(&stated.radius)?,
             spacing: length(&stated.spacing)?,
             centres: match stated.centres {
@@ -292,7 +292,7 @@ impl Planner<'_> {
                 ));
             }
         }
-        let tested = Tested { notes, warnings, ..Tested::by("discs", AxisChoice::Material) };
+        let tested = ContactInfo { notes, warnings, ..ContactInfo::by("discs", AxisChoice::Material) };
         Ok((Box::new(pairs), tested))
     }
 

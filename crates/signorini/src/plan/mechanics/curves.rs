@@ -16,7 +16,7 @@ use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{self, Closure};
 use signorini_rope::chain::Chain;
-use signorini_rope::chain::body::Rest;
+use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::{Path, Sampled};
 use signorini_rope::section::{Section, Stiffness};
 
@@ -50,10 +50,10 @@ impl Planner<'_> {
                     let message = format!("the pretension is {value}, but a rope carries tension only");
                     return Err(problem.error(tension, message).help("give 0 or more"));
                 }
-                Rest::Pretension(value)
+                ReferenceLength::Pretension(value)
             }
-            (None, Some(length)) => Rest::Length(self.reader.positive(length, LENGTH)?),
-            (None, None) => Rest::Path,
+            (None, Some(length)) => ReferenceLength::Length(self.reader.positive(length, LENGTH)?),
+            (None, None) => ReferenceLength::Path,
         };
         let sampled = self.sampled(&path, cells, smooth, &key.path)?;
         let refused = |message: String| problem.error(&key.path, message);
@@ -115,7 +115,7 @@ impl Planner<'_> {
             }
             let (axial, bending) = (stiffness.axial, stiffness.bending[0]);
             let carries = Carries::TensionAndCompression;
-            let cable = Cable::new(name, &sampled, axial, bending, carries, Rest::Path, radius)
+            let cable = Cable::new(name, &sampled, axial, bending, carries, ReferenceLength::Path, radius)
                 .map_err(|e| refused(e.to_string()))?;
             let cable = points.map_or(cable.clone(), |n| cable.with_contact_points(n));
             return Ok((Box::new(cable), radius));

@@ -19,13 +19,13 @@ use super::pieces::{Pieces, UNITE};
 use super::planner::Planner;
 use crate::problem::units::{LENGTH, Units};
 use crate::problem::{self, Body, CaseError, Motion, Problem, Space, UnstableStates};
-use crate::report::{Carried, Warning};
+use crate::report::{TractionKind, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::system::TimeField;
 use signorini_mechanics::{AxisChoice, IncrementError, PlacedLoad, Support, System, TimedLoad, Unstable};
-use signorini_rope::curve_pair::search::{Between, Searched, crossings};
+use signorini_rope::curve_pair::search::{SearchScope, Searched, crossings};
 use solids::PlannedSolid;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -51,14 +51,14 @@ pub enum Kind {
 
 /// What a contact is, for results and pictures.
 #[derive(Clone, Debug)]
-pub struct Tested {
+pub struct ContactInfo {
     /// The method in a word.
     pub method: &'static str,
     pub axis: AxisChoice,
     /// Whether its points are those of a curve, in order.
     pub along_a_curve: bool,
     /// What the first body carries.
-    pub carries: Carried,
+    pub carries: TractionKind,
     /// Whether sliding is small by choice: gaps and slips are linear in the displacements.
     pub slides_little: bool,
     /// Whether it is kept at single nodes of a surface that has none by nature.
@@ -68,12 +68,21 @@ pub struct Tested {
     pub warnings: Vec<String>,
 }
 
-impl Tested {
+impl ContactInfo {
     /// By a method, at points in no order, with nothing to say of it.
     fn by(method: &'static str, axis: AxisChoice) -> Self {
-        let carries = Carried::Pressure;
+        let carries = TractionKind::Pressure;
         let (notes, warnings) = (Vec::new(), Vec::new());
-        Tested { method, axis, along_a_curve: false, carries, slides_little: false, at_nodes: false, notes, warnings }
+        ContactInfo {
+            method,
+            axis,
+            along_a_curve: false,
+            carries,
+            slides_little: false,
+            at_nodes: false,
+            notes,
+            warnings,
+        }
     }
 }
 
@@ -91,7 +100,7 @@ pub struct MechanicsPlan {
     /// Values of the case that were no numbers.
     pub wrong: Wrong,
     /// What each contact of the system is.
-    pub contacts: Vec<Tested>,
+    pub contacts: Vec<ContactInfo>,
     /// What was found out about images and bodies of finite cells.
     pub notes: Vec<String>,
 }
@@ -311,7 +320,7 @@ impl Planner<'_> {
         &self,
         system: &System,
         kinds: &[Kind],
-        contacts: &[Tested],
+        contacts: &[ContactInfo],
         warnings: &mut Vec<Warning>,
     ) -> Result<(), CaseError> {
         let problem = self.problem;
@@ -384,7 +393,7 @@ impl Planner<'_> {
 
     /// Whether curves that may touch start outside of each other: deeper than the thinner one is thick nothing tells on which
     /// side.
-    fn check_crossings(&self, system: &System, kinds: &[Kind], contacts: &[Tested]) -> Result<(), CaseError> {
+    fn check_crossings(&self, system: &System, kinds: &[Kind], contacts: &[ContactInfo]) -> Result<(), CaseError> {
         let start = system.start();
         for (contact, tested) in system.contacts.iter().zip(contacts) {
             let bodies = contact.bodies();
@@ -400,7 +409,7 @@ impl Planner<'_> {
                 Searched { curve: a.as_ref(), configuration: configuration(0) },
                 Searched { curve: b.as_ref(), configuration: configuration(1) },
             ];
-            for near in crossings(sides[0], sides[1], Between::Two, 0.0) {
+            for near in crossings(sides[0], sides[1], SearchScope::Two, 0.0) {
                 let depth = own + other - near.distance;
                 if depth > own.min(*other) {
                     let x = a.jet(configuration(0), near.points[0].element, near.points[0].xi).x;

@@ -1,7 +1,7 @@
 //! Contact by mortar between bodies of a system.
 
 use super::places::normals_of;
-use super::{Kind, Tested};
+use super::{ContactInfo, Kind};
 use crate::plan::planner::Planner;
 use crate::problem::{self, CaseError, Enforcement, Friction, Method, Sliding};
 use signorini_mechanics::contact::Part;
@@ -18,7 +18,7 @@ impl Planner<'_> {
         key: &problem::Contact,
         [slave, master]: [&Part; 2],
         (system, kinds): (&System, &[Kind]),
-    ) -> Result<Option<(Box<dyn Interaction>, Tested)>, CaseError> {
+    ) -> Result<Option<(Box<dyn Interaction>, ContactInfo)>, CaseError> {
         let problem = self.problem;
         let body = |part: &Part| system.bodies[part.body].as_ref();
         let unfit = if slave.body == master.body {
@@ -61,7 +61,7 @@ impl Planner<'_> {
         if slides_little {
             contact.slides_little();
         }
-        let tested = Tested { slides_little, ..Tested::by("mortar", contact.axis) };
+        let tested = ContactInfo { slides_little, ..ContactInfo::by("mortar", contact.axis) };
         Ok(Some((Box::new(contact), tested)))
     }
 
@@ -69,7 +69,7 @@ impl Planner<'_> {
     pub(super) fn check_sliding(
         &self,
         key: &problem::Contact,
-        tested: &Tested,
+        tested: &ContactInfo,
         bodies: [&Part; 2],
         (system, kinds): (&System, &[Kind]),
     ) -> Result<(), CaseError> {

@@ -1,7 +1,7 @@
 //! Checks the fields of a membrane where they will be used.
 
 use super::MembranePlan;
-use crate::plan::placed::{Placed, field};
+use crate::plan::located::{LocatedExpression, field};
 use crate::problem::CaseError;
 use signorini_fem::cut::QuadraturePoint;
 use signorini_geometry::{Jet, Point, Real};
@@ -15,12 +15,12 @@ impl<const D: usize> MembranePlan<D> {
     pub fn check_fields(&self, membrane: &Membrane<D>, time: f64) -> Result<(), CaseError> {
         let quadrature = (self.kernel.quadrature)(membrane);
         let mut failure: Option<CaseError> = None;
-        let wrong = |p: &Placed, x: &Point<D>, v: f64, what: &str| {
+        let wrong = |p: &LocatedExpression, x: &Point<D>, v: f64, what: &str| {
             let at: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
             self.head.problem.error(&p.key, format!("`{}` is {v} at ({}), t = {time}: {what}", p.key, at.join(", ")))
         };
         let finite = "it must be finite everywhere in the membrane";
-        let fields: Vec<(&Placed, SharedField<D>, bool)> =
+        let fields: Vec<(&LocatedExpression, SharedField<D>, bool)> =
             std::iter::once((&self.tension, membrane.tension.clone(), true))
                 .chain(self.loads.values().map(|l| (l, field(&l.expression, time), false)))
                 .chain(self.contacts.iter().zip(&membrane.obstacles.0).flat_map(|(c, o)| {

@@ -9,8 +9,8 @@ mod times;
 
 use super::domain;
 use super::head::Head;
+use super::located::{LocatedExpression, field};
 use super::memory::{memory_at_hand, memory_estimate};
-use super::placed::{Placed, field};
 use super::surface::Contact;
 use crate::problem::{self, Body, CaseError, Space};
 use signorini_fem::{Cells, Grid};
@@ -29,7 +29,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct PlannedSupport {
     pub name: String,
-    pub displacement: Placed,
+    pub displacement: LocatedExpression,
     pub pieces: Vec<usize>,
 }
 
@@ -44,8 +44,8 @@ pub struct MembranePlan<const D: usize> {
     pub domain: DomainOnCells<D>,
     /// Where cells are divided.
     pub refinement: Refinement<D>,
-    pub tension: Placed,
-    pub loads: BTreeMap<String, Placed>,
+    pub tension: LocatedExpression,
+    pub loads: BTreeMap<String, LocatedExpression>,
     pub supports: Vec<PlannedSupport>,
     pub body: String,
     /// What it may touch, in the order of the membrane's obstacles.
@@ -60,7 +60,7 @@ pub struct MembranePlan<const D: usize> {
 }
 
 impl<const D: usize> MembranePlan<D> {
-    pub(super) fn expressions(&self) -> impl Iterator<Item = &Placed> {
+    pub(super) fn expressions(&self) -> impl Iterator<Item = &LocatedExpression> {
         let touched =
             self.contacts.iter().flat_map(|c| std::iter::once(&c.height).chain(&c.displacement).chain(&c.adhesion));
         std::iter::once(&self.tension)

@@ -2,7 +2,7 @@
 
 use super::{MembranePlan, PlannedSupport};
 use crate::plan::domain;
-use crate::plan::placed::Placed;
+use crate::plan::located::LocatedExpression;
 use crate::plan::planner::Planner;
 use crate::plan::surface::Contact;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, PRESSURE};
@@ -116,8 +116,8 @@ impl Planner<'_> {
         &self,
         body: &str,
         on: domain::OnCells<D>,
-        tension: Placed,
-        loads: BTreeMap<String, Placed>,
+        tension: LocatedExpression,
+        loads: BTreeMap<String, LocatedExpression>,
         supports: Vec<PlannedSupport>,
         contacts: Vec<Contact>,
         method: MethodChoice,
@@ -166,7 +166,7 @@ impl Planner<'_> {
         Ok(plan)
     }
 
-    fn loads(&self, body: &str) -> Result<BTreeMap<String, Placed>, CaseError> {
+    fn loads(&self, body: &str) -> Result<BTreeMap<String, LocatedExpression>, CaseError> {
         let mut loads = BTreeMap::new();
         for (name, key) in &self.problem.loads {
             self.check_place(&key.on, body, &[])?;

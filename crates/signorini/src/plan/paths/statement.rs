@@ -1,7 +1,7 @@
 //! Paths as they are planned.
 
 use crate::plan::head::Head;
-use crate::plan::placed::Placed;
+use crate::plan::located::LocatedExpression;
 use crate::plan::rigid::RigidBody;
 use crate::problem::KeyPath;
 use signorini_geometry::{Point, Vector};
@@ -33,13 +33,13 @@ pub struct PlannedPath {
     pub to: PlannedEnd,
     pub stations: Vec<PlannedStation>,
     pub friction: Option<Friction>,
-    pub tension: Option<Placed>,
-    pub end_tension: Option<Placed>,
+    pub tension: Option<LocatedExpression>,
+    pub end_tension: Option<LocatedExpression>,
 }
 
 /// A fixed point of a path: of space, by time, or of a body.
 pub enum PlannedEnd {
-    Space([Placed; 3]),
+    Space([LocatedExpression; 3]),
     OnBody(usize, Point<3>),
 }
 

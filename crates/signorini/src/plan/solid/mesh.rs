@@ -1,7 +1,7 @@
 //! Meshes of solids: boxes and files.
 
 use crate::expression::Scope;
-use crate::plan::placed::Placed;
+use crate::plan::located::LocatedExpression;
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
@@ -73,7 +73,7 @@ impl Planner<'_> {
         let mut placed = Vec::new();
         for v in map {
             let expression = self.reader.expression(v, LENGTH, variables)?;
-            placed.push(Placed { expression, key: self.key(v) });
+            placed.push(LocatedExpression { expression, key: self.key(v) });
         }
         let mut failure: Option<CaseError> = None;
         // The geometry is as curved as the displacement.
@@ -173,7 +173,12 @@ impl Planner<'_> {
 }
 
 /// The value of an expression at a point and time, or an error that names it.
-fn evaluate<const D: usize>(problem: &Problem, placed: &Placed, x: &Point<D>, time: f64) -> Result<f64, CaseError> {
+fn evaluate<const D: usize>(
+    problem: &Problem,
+    placed: &LocatedExpression,
+    x: &Point<D>,
+    time: f64,
+) -> Result<f64, CaseError> {
     let position = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
     let value = placed.expression.evaluate(&Scope { position, time });
     if value.is_finite() {

@@ -5,7 +5,7 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{Body as Key, Enforcement, Method, Penalty, Space as Stated};
-use crate::report::{Carried, StepReport};
+use crate::report::{StepReport, TractionKind};
 use serde_json::Value;
 use signorini_audit::{
     Acting, Body, Boundary, Carries, Contact, Curve, Finding, ForceBounds, Form, Placement, Rigid, Setting, Solid,
@@ -160,9 +160,9 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
         let (contact, tested) = (&plan.system.contacts[k], &plan.contacts[k]);
         let bodies = contact.bodies();
         let carries = match tested.carries {
-            Carried::LineLoad => Carries::LineLoad,
-            Carried::Force => Carries::Force,
-            Carried::Pressure => Carries::Traction,
+            TractionKind::LineLoad => Carries::LineLoad,
+            TractionKind::Force => Carries::Force,
+            TractionKind::Pressure => Carries::Traction,
         };
         let penalty = problem.contacts.get(contact.name()).and_then(|key| penalty_of(key.method.as_ref()?));
         let wanted = penalty.and_then(|p| planner.as_ref()?.reader.positive(p.penetration.as_ref()?, LENGTH).ok());

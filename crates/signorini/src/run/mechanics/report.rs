@@ -2,11 +2,11 @@
 
 use crate::output::figure::{told, told_vector};
 use crate::output::system::{CurveShown, SystemShown, frames};
-use crate::plan::mechanics::{AXIS_SUPPORT, Kind, MechanicsPlan, Tested};
+use crate::plan::mechanics::{AXIS_SUPPORT, ContactInfo, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
-    Carried, CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
-    StabilityReport, StepReport, UnitNames, Warning, WarningKind, vector,
+    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    StabilityReport, StepReport, TractionKind, UnitNames, Warning, WarningKind, vector,
 };
 use crate::run::contact_verdict::{contact_verdict, sticking};
 use crate::run::record::Record;
@@ -243,7 +243,7 @@ fn resultant(forces: impl Iterator<Item = Vector<3>> + Clone) -> Vector<3> {
 
 fn contact_report(
     plan: &MechanicsPlan,
-    (contact, tested): (&dyn Interaction, &Tested),
+    (contact, tested): (&dyn Interaction, &ContactInfo),
     sites: &[SiteResult],
 ) -> ContactReport {
     let closed = || sites.iter().filter(|s| s.status != Status::Open);
@@ -270,7 +270,7 @@ fn contact_report(
         carries: tested.carries,
         area: area_of_contact,
         zones: components.len(),
-        radius: (tested.carries == Carried::Pressure)
+        radius: (tested.carries == TractionKind::Pressure)
             .then(|| ContactReport::radius_of(plan.space, area_of_contact, components.len()))
             .flatten(),
         components,
@@ -289,7 +289,7 @@ fn contact_report(
 }
 
 /// What friction could hold of a rope where it touches; none where its law has no coefficients, or no axes that stay.
-fn rope_limits((contact, tested): (&dyn Interaction, &Tested), sites: &[SiteResult]) -> Option<RopeLimits> {
+fn rope_limits((contact, tested): (&dyn Interaction, &ContactInfo), sites: &[SiteResult]) -> Option<RopeLimits> {
     let [along, across] = contact.law()?.per_pressure()?;
     let friction = match tested.axis {
         AxisChoice::OnMaster(axis) => {
@@ -335,7 +335,7 @@ const LIES_ON: f64 = 1e-9;
 fn warn_of_closing(plan: &MechanicsPlan, [before, now]: [&IncrementResult; 2], time: f64, record: &mut Record) {
     let near = LIES_ON * plan.system.size();
     for (k, (contact, sites)) in plan.system.contacts.iter().zip(&now.sites).enumerate() {
-        let of_surface = plan.contacts[k].carries == Carried::Pressure && !plan.contacts[k].along_a_curve;
+        let of_surface = plan.contacts[k].carries == TractionKind::Pressure && !plan.contacts[k].along_a_curve;
         if contact.law().is_none() || !of_surface {
             continue;
         }

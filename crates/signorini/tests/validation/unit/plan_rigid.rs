@@ -2,7 +2,7 @@
 
 use signorini::expression::Expression;
 use signorini::problem::KeyPath;
-use signorini::testing::{Placed, RigidBody};
+use signorini::testing::{LocatedExpression, RigidBody};
 use signorini_geometry::rigid_shape::{GapJet, Plane};
 use signorini_geometry::{Point, Vector};
 use std::f64::consts::FRAC_PI_2;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 #[test]
 fn a_turned_body_turns_its_gap_and_normal() {
-    let number = |v: f64| Placed { expression: Expression::number(v), key: KeyPath::default() };
+    let number = |v: f64| LocatedExpression { expression: Expression::number(v), key: KeyPath::default() };
     let plane = Plane { point: Point::<3>::new(1.0, 0.0, 0.0), normal: Vector::<3>::y() };
     let displacement = vec![number(0.0), number(0.5)];
     let body = RigidBody::new("plane", Arc::new(plane), displacement, vec![number(FRAC_PI_2)]);

@@ -34,7 +34,7 @@ pub struct Found<const D: usize> {
 
 /// What an increment has to tell besides its state.
 #[derive(Default)]
-pub struct Told<const D: usize> {
+pub struct Messages<const D: usize> {
     pub remarks: Vec<Remark>,
     pub events: Vec<Event<D>>,
 }
@@ -42,7 +42,7 @@ pub struct Told<const D: usize> {
 /// The history of a membrane, whatever its zones are.
 pub trait History<const D: usize> {
     /// Solves an increment, from the state of the one before; with what is to be told of it.
-    fn advance(&mut self, index: usize, progress: &mut dyn Progress) -> (Advanced<D>, Told<D>);
+    fn advance(&mut self, index: usize, progress: &mut dyn Progress) -> (Advanced<D>, Messages<D>);
 
     /// The state between two increments, enough to go on from to the same digits.
     fn save(&self) -> Value;

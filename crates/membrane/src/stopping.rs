@@ -51,7 +51,7 @@ const DOUBTED: usize = 2;
 /// How far fronts are brought to rest where they curve within a cell: what they lack there is little beside what the grid
 /// cannot show of it, and Newton's method converges slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
+pub enum StoppingRule {
     /// Until nothing more changes that counts.
     Final,
     /// The same, next to a zone that is one already: it is not corrected where a body is penetrated.
@@ -64,11 +64,11 @@ pub enum Rest {
     BeforeRefinement,
 }
 
-impl Rest {
+impl StoppingRule {
     /// The slope jump in the modes, relative to what they do not see of it, at which fronts sharper than a cell rest.
     fn share(self) -> f64 {
         match self {
-            Rest::BeforeDivision => 0.2,
+            StoppingRule::BeforeDivision => 0.2,
             _ => 1e-3,
         }
     }
@@ -76,7 +76,7 @@ impl Rest {
     /// The slope jump at which fronts rest, relative to its tolerance.
     fn residual(self) -> f64 {
         match self {
-            Rest::BeforeRefinement => 10.0,
+            StoppingRule::BeforeRefinement => 10.0,
             _ => 1.0,
         }
     }
@@ -84,28 +84,28 @@ impl Rest {
     /// Steps after which fronts that do not come to rest are given up.
     pub fn most_steps(self) -> usize {
         match self {
-            Rest::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
+            StoppingRule::BeforeDivision => MOST_STEPS_BEFORE_DIVISION,
             _ => MOST_STEPS,
         }
     }
 
     /// Whether fronts are left to smaller cells where those that they lie in are too large for Newton's method.
     fn leaves(self) -> bool {
-        matches!(self, Rest::BeforeDivision | Rest::BeforeMoreDivision)
+        matches!(self, StoppingRule::BeforeDivision | StoppingRule::BeforeMoreDivision)
     }
 
     /// Corrections of the zone after which it is given up.
     pub fn most_sweeps(self) -> usize {
         match self {
-            Rest::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
+            StoppingRule::BeforeDivision => MOST_SWEEPS_BEFORE_DIVISION,
             _ => MOST_SWEEPS,
         }
     }
 
     /// Whether fronts may rest after a solve.
-    pub fn judge(self, course: &Course, sight: &Sight<'_>) -> Verdict {
+    pub fn judge(self, course: &IterationHistory, sight: &Observation<'_>) -> Decision {
         if sight.residual <= 1.0 {
-            return Verdict::AtRest;
+            return Decision::AtRest;
         }
         let sharp = sight.bend >= 1.0;
         let lost = sight.tips && sharp;
@@ -131,24 +131,24 @@ impl Rest {
         let slow = || at_tips || (course.waited >= 1 && sight.step < ASTRAY) || (sight.farthest)() < NEARLY;
         if self.leaves() && !sight.adhering && sight.bend >= SHARP && slow() {
             // What sharp fronts lack in the end may be less than what other fronts settle with.
-            return Verdict::Left { settled: settled || sight.step < SETTLED };
+            return Decision::Left { settled: settled || sight.step < SETTLED };
         }
         if settled {
-            return Verdict::Settled;
+            return Decision::Settled;
         }
         let round_off = course.waited >= 1 && sight.step < ROUND_OFF;
         let stuck = sight.kinks && course.waited >= 1 && sight.residual <= STUCK;
         let blunt = || sharp && (sight.unseen)(self.share());
         if sight.residual <= self.residual() || round_off || stuck || blunt() {
-            Verdict::AtRest
+            Decision::AtRest
         } else {
-            Verdict::Moving
+            Decision::Moving
         }
     }
 }
 
 /// What is known of the fronts after a solve.
-pub struct Sight<'a> {
+pub struct Observation<'a> {
     /// The slope jump relative to its tolerance.
     pub residual: f64,
     /// Length in cells and kind of the step that Newton's method would make.
@@ -175,7 +175,7 @@ pub struct Sight<'a> {
 
 /// Whether fronts may rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Decision {
     Moving,
     AtRest,
     /// As near as they come on these cells.
@@ -188,7 +188,7 @@ pub enum Verdict {
 
 /// How the residual has gone from step to step.
 #[derive(Debug)]
-pub struct Course {
+pub struct IterationHistory {
     best: f64,
     previous: f64,
     area: f64,
@@ -202,7 +202,7 @@ pub struct Course {
     doubted: usize,
 }
 
-impl Default for Course {
+impl Default for IterationHistory {
     fn default() -> Self {
         Self {
             best: f64::INFINITY,
@@ -217,7 +217,7 @@ impl Default for Course {
     }
 }
 
-impl Course {
+impl IterationHistory {
     /// Takes the residual and the area of contact after a solve into account, from which a step of a kind may follow; fronts
     /// that every step shifts do not fall slowly.
     pub fn take(&mut self, residual: f64, area: f64, kind: StepKind, shifted: bool) {

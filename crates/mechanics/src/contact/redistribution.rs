@@ -7,23 +7,27 @@
 //! they have slid no farther than what was passed on to them.
 
 use super::traction::{Traction, axes};
-use super::{Contact, Touch};
+use super::{Contact, MeasuredPair};
 use crate::pair::NoPair;
 use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 
 impl Contact {
     /// The friction that is passed on to each site of a curve, along its axes, in the order of the curve.
-    pub(super) fn passed(&self, found: &[Option<Result<Touch, NoPair>>], lambda: &[f64]) -> Vec<[f64; 2]> {
-        let mut passed = vec![[0.0; 2]; found.len()];
-        let Some(law) = self.friction.as_deref() else { return passed };
+    pub(super) fn redistributed_friction(
+        &self,
+        found: &[Option<Result<MeasuredPair, NoPair>>],
+        lambda: &[f64],
+    ) -> Vec<[f64; 2]> {
+        let mut redistributed = vec![[0.0; 2]; found.len()];
+        let Some(law) = self.friction.as_deref() else { return redistributed };
         let sites: Vec<Option<Loaded>> = (found.iter().enumerate())
             .map(|(k, touch)| {
                 let touch = touch.as_ref()?.as_ref().ok()?;
                 let at = self.multiplier(k, lambda);
                 let Traction { projected: found, trial, .. } = self.traction(k, touch, at, [0.0; 2]);
                 if found.status == Status::Slip && at[1] * found.traction[1] + at[2] * found.traction[2] < 0.0 {
-                    passed[k] = trial.map(|t| -t);
+                    redistributed[k] = trial.map(|t| -t);
                     return None;
                 }
                 (found.status != Status::Open).then(|| Loaded {
@@ -54,13 +58,13 @@ impl Contact {
                 if whole == 0.0 || size == 0.0 {
                     break;
                 }
-                let before = site.beyond(law, passed[j]);
-                (0..2).for_each(|a| passed[j][a] += more[a] * whole / (size * site.weight));
-                beyond = site.beyond(law, passed[j]) - before;
+                let before = site.beyond(law, redistributed[j]);
+                (0..2).for_each(|a| redistributed[j][a] += more[a] * whole / (size * site.weight));
+                beyond = site.beyond(law, redistributed[j]) - before;
                 at = step(j);
             }
         }
-        passed
+        redistributed
     }
 }
 
@@ -80,8 +84,8 @@ impl Loaded {
     }
 
     /// The force beyond the limit of friction, along the slip.
-    fn beyond(&self, law: &dyn Law, passed: [f64; 2]) -> Vector<3> {
-        let trial = [0, 1].map(|a| self.friction[a] + passed[a]);
+    fn beyond(&self, law: &dyn Law, redistributed: [f64; 2]) -> Vector<3> {
+        let trial = [0, 1].map(|a| self.friction[a] + redistributed[a]);
         let [_, t1, t2] = law.project([self.pressure, trial[0], trial[1]]).traction;
         (self.axes[0] * (trial[0] - t1) + self.axes[1] * (trial[1] - t2)) * self.weight
     }

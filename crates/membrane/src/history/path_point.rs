@@ -4,7 +4,7 @@ use signorini_solve::{Iteration, Progress};
 
 /// A state on the path.
 #[derive(Clone)]
-pub struct Known<Z> {
+pub struct PathPoint<Z> {
     pub time: f64,
     pub zone: Z,
     pub area: f64,
@@ -16,8 +16,8 @@ pub struct Known<Z> {
 }
 
 /// What a time between two others has.
-pub enum Between<Z> {
-    State(Known<Z>),
+pub enum Trial<Z> {
+    State(PathPoint<Z>),
     /// Contact as at the earlier or the later time, in zones smaller than the grid can tell.
     AsEarlier,
     AsLater,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// An expression and the key it comes from.
 #[derive(Clone)]
-pub struct Placed {
+pub struct LocatedExpression {
     pub expression: Expression,
     pub key: KeyPath,
 }

@@ -14,13 +14,13 @@
 //! or within a body have normals that do not oppose each other (`n_i·n_j > -0.3`), are neighbours and do not touch.
 
 use crate::spread::SAME_FACE;
-use signorini_contact::{Law, Status};
+use signorini_contact::Status;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::interaction::{NotItsHistory, OuterIteration, penalty_factor};
 use signorini_mechanics::{
-    Assembler, Bodies, Body, Function, Interaction, InteractionUnknowns, PlaceError, Sampling, SimplerFriction, Site,
-    SiteResult,
+    Assembler, Bodies, Body, ContactLaw, Drawn, Enforcement, Function, Interaction, InteractionUnknowns, Iterated, Passing,
+    PlaceError, Sampling, Site, SiteResult,
 };
 use std::collections::BTreeMap;
 
@@ -88,8 +88,8 @@ struct Surface {
 pub struct DiscPairs {
     name: String,
     surfaces: Vec<Surface>,
-    /// Penetration to be left at the largest pressure.
-    wanted: Option<f64>,
+    /// A penalty.
+    law: ContactLaw,
     /// What multiplies the stiffness of the bodies.
     factor: f64,
 }
@@ -194,7 +194,9 @@ impl DiscPairs {
             surfaces.push(surface);
             findings.push(found);
         }
-        Ok((DiscPairs { name: name.to_string(), surfaces, wanted, factor: STIFFER }, findings))
+        let penalty = Enforcement::Penalty { wanted_penetration: wanted };
+        let law = ContactLaw::new(penalty, Vec::new(), Vec::new());
+        Ok((DiscPairs { name: name.to_string(), surfaces, law, factor: STIFFER }, findings))
     }
 
     fn discs(&self) -> impl Iterator<Item = (&Surface, &Disc)> {
@@ -265,8 +267,12 @@ impl Interaction for DiscPairs {
         [&self.surfaces[0].part, &self.surfaces[self.surfaces.len() - 1].part]
     }
 
-    fn law(&self) -> Option<&dyn Law> {
-        None
+    fn law(&self) -> &ContactLaw {
+        &self.law
+    }
+
+    fn law_mut(&mut self) -> &mut ContactLaw {
+        &mut self.law
     }
 
     fn stiffness(&self, _: &[Box<dyn Body>]) -> f64 {
@@ -333,8 +339,6 @@ impl Interaction for DiscPairs {
         Ok(())
     }
 
-    fn unload(&mut self) {}
-
     fn augment(
         &mut self,
         _: Bodies<'_>,
@@ -342,14 +346,14 @@ impl Interaction for DiscPairs {
         found: &[SiteResult],
         _: OuterIteration,
     ) -> Result<f64, PlaceError> {
-        let factor = self.wanted.and_then(|wanted| penalty_factor(found, wanted));
+        let wanted = match self.law.enforcement {
+            Enforcement::Penalty { wanted_penetration } => wanted_penetration,
+            _ => None,
+        };
+        let factor = wanted.and_then(|wanted| penalty_factor(found, wanted));
         self.factor *= factor.unwrap_or(1.0);
         Ok(factor.map_or(0.0, |f| (f - 1.0).abs()))
     }
-
-    fn simplify(&mut self, _: SimplerFriction) {}
-
-    fn restore_law(&mut self) {}
 
     fn history(&self) -> [Vec<f64>; 2] {
         [Vec::new(), vec![self.factor]]
@@ -365,3 +369,9 @@ impl Interaction for DiscPairs {
         }
     }
 }
+
+impl Iterated for DiscPairs {}
+
+impl Passing for DiscPairs {}
+
+impl Drawn for DiscPairs {}

@@ -23,12 +23,12 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Option<SystemState> {
-        let has_friction = self.contacts.iter().any(|contact| contact.law().is_some());
+        let has_friction = self.contacts.iter().any(|contact| contact.friction().is_some());
         let ways = [SimplerFriction::Stated, SimplerFriction::Sticks];
         ways[..if has_friction { 2 } else { 1 }].iter().find_map(|friction| {
-            self.contacts.iter_mut().for_each(|contact| contact.simplify(*friction));
+            self.contacts.iter_mut().for_each(|contact| contact.law_mut().simplify(*friction));
             let found = self.inner(start, time, solved, report).ok();
-            self.contacts.iter_mut().for_each(|contact| contact.restore_law());
+            self.contacts.iter_mut().for_each(|contact| contact.law_mut().restore());
             found.map(|found| found.state)
         })
     }
@@ -41,8 +41,8 @@ impl System {
         let lands = self.lands(at);
         let list = self.contacts.iter().map(AsRef::as_ref);
         let of = |(contact, lands): (&dyn Interaction, &bool)| match lands {
-            true => contact.initial_multipliers(at, &residual),
-            false => contact.previous_multipliers(),
+            true => contact.initial_multipliers(at, &residual).unwrap_or_else(|| contact.law().multipliers()),
+            false => contact.law().multipliers(),
         };
         Ok(list.zip(&lands).flat_map(of).collect())
     }
@@ -52,7 +52,7 @@ impl System {
     fn lands(&self, at: Bodies<'_>) -> Vec<bool> {
         let gaps: Vec<Option<f64>> = self.contacts.iter().map(|contact| contact.least_gap(at)).collect();
         let mut out: Vec<bool> =
-            self.contacts.iter().zip(&gaps).map(|(c, gap)| gap.is_none() && c.is_exact()).collect();
+            self.contacts.iter().zip(&gaps).map(|(c, gap)| gap.is_none() && c.law().is_exact()).collect();
         for body in (0..self.bodies.len()).filter(|body| self.is_unheld(*body)) {
             let of_body = |k: &usize| self.contacts[*k].bodies().contains(&body);
             let near = LANDS * self.bodies[body].size();

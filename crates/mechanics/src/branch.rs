@@ -154,7 +154,7 @@ impl System {
             let found = self.histories();
             told.critical_time = self.critical_time(from, time, kept, report)?;
             self.put_back(&found);
-            self.contacts.iter_mut().for_each(|c| c.begin(time));
+            self.contacts.iter_mut().for_each(|c| c.begin_increment(time));
             self.end();
         }
         Ok(())

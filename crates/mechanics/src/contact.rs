@@ -32,13 +32,12 @@ pub use crate::part::Part;
 pub use partners::Pairing;
 
 use crate::body::{Body, BodyState, PlaceError};
+use crate::contact_law::ContactLaw;
 use crate::enforcement::Enforcement;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Anchor, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
-use crate::simpler::SetAside;
 use partners::Partners;
-use signorini_contact::Law;
 use signorini_geometry::Vector;
 pub(crate) use traction::axes;
 
@@ -48,9 +47,7 @@ pub struct Contact {
     pub slave: Part,
     pub master: Part,
     pub sampling: Sampling,
-    pub enforcement: Enforcement,
-    /// Without it the sides slide freely.
-    pub friction: Option<Box<dyn Law>>,
+    pub law: ContactLaw,
     pub axis: AxisChoice,
     /// How far apart, or inside each other, points are looked at.
     pub reach: f64,
@@ -58,25 +55,15 @@ pub struct Contact {
     pub pairing: Pairing,
     partners: Partners,
     sites: Vec<Site>,
-    /// Traction per unit of gap, and of slip, of each site: the scale of the trial, not the penalty.
-    pub(crate) stiffness: Vec<f64>,
-    /// That scale over the penalty.
-    pub(crate) softness: f64,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
     /// The rotation vectors of slave and master at the last state, of rigid bodies.
     pub(crate) turned: [Vector<3>; 2],
-    /// Times of the last state and of the one that is looked for.
-    pub(crate) times: [f64; 2],
-    /// What is stated, while a start is looked for with something simpler.
-    pub(crate) set_aside: Option<SetAside>,
 }
 
-/// What a site remembers of the last state.
+/// What a site remembers of the last state besides its traction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SiteMemory {
-    /// The multiplier: pressure and friction along the axes.
-    pub traction: [f64; 3],
     pub stuck: Option<Stuck>,
     /// How far the site slipped in all while it was closed, along the axes.
     pub slip: [f64; 2],
@@ -136,19 +123,14 @@ impl Contact {
             slave: slave.0,
             master: master.0,
             sampling,
-            enforcement,
-            friction: None,
+            law: ContactLaw::new(enforcement, stiffness, sites.iter().map(|s| s.weight).collect()),
             axis: AxisChoice::Material,
             reach,
             pairing: Pairing::Now,
             partners: Partners::new(),
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
-            stiffness,
-            softness: enforcement.softness(),
             turned: [Vector::<3>::zeros(); 2],
-            times: [0.0; 2],
-            set_aside: None,
         })
     }
 
@@ -158,7 +140,9 @@ impl Contact {
             list.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| *v).collect()
         }
         self.sites = filtered(&self.sites, kept);
-        self.stiffness = filtered(&self.stiffness, kept);
+        self.law.stiffness = filtered(&self.law.stiffness, kept);
+        self.law.areas = filtered(&self.law.areas, kept);
+        self.law.kept = filtered(&self.law.kept, kept);
         self.memory = filtered(&self.memory, kept);
     }
 
@@ -167,7 +151,7 @@ impl Contact {
     }
 
     pub(crate) fn components(&self) -> usize {
-        if self.friction.is_some() { 3 } else { 1 }
+        self.law.slots().len()
     }
 
     /// Itself and itself: a body that may touch itself.
@@ -189,7 +173,7 @@ impl Contact {
         let anchor = master.at(&partner.point);
         let with = |order| {
             let mut pair = partner.pair(&placed, &anchor, sides.first, order);
-            if self.friction.is_some() {
+            if self.law.friction.is_some() {
                 partner.add_slip(&placed, &anchor, &mut pair);
             }
             self.with_stress(k, sides, pair)
@@ -233,7 +217,7 @@ impl Contact {
         };
         let Some(met) = met else { return (placed, None) };
         // Pairs that are kept have slips of their own.
-        let friction = self.friction.is_some() && self.pairing == Pairing::Now;
+        let friction = self.law.friction.is_some() && self.pairing == Pairing::Now;
         let stuck = self.memory[k].stuck.filter(|_| friction);
         let anchor: Option<(Stuck, Anchor)> = stuck.map(|s| (s, master.at(&s.point)));
         let encounter = PairGeometry {
@@ -255,19 +239,17 @@ impl Contact {
 
     /// The gap beyond which a site is open whatever it meets.
     fn closes_within(&self, k: usize, sides: &Sides<'_>, unknown: [f64; 3]) -> f64 {
-        let base = if self.enforcement.takes_stress() {
+        let base = self.law.enforcement.takes_stress().then(|| {
             let stress = sides.slave.0.traction(sides.slave.1, &self.sites[k]);
             stress.map_or(f64::INFINITY, |s| s.vector.norm())
-        } else {
-            self.base(k)[0]
-        };
-        let trial = unknown[0] - self.softness * (unknown[0] - base);
-        (trial / self.stiffness[k]).max(0.0)
+        });
+        let pressing = self.law.pressing(k, unknown[0], base);
+        (pressing / self.law.stiffness[k]).max(0.0) + self.law.friction.as_ref().map_or(0.0, |law| law.range())
     }
 
     fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> MeasuredPair {
         let (body, state) = sides.slave;
-        let stress = self.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten();
+        let stress = self.law.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten();
         let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
         MeasuredPair { pair, stress }
     }

@@ -57,7 +57,7 @@ impl System {
 
     /// Whether there is friction.
     pub(crate) fn has_friction(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.law().is_some())
+        self.contacts.iter().any(|contact| contact.friction().is_some())
     }
 
     /// The derivative of what holds places of a body by terms in its unknowns, and of its springs.
@@ -249,7 +249,7 @@ impl Problem<'_> {
             None => {
                 let mut row = unknown - self.is_spin.len();
                 for contact in &self.system.contacts {
-                    let rows = contact.rows().len();
+                    let rows = contact.law().rows().count();
                     if row < rows {
                         return Some(format!("; the largest residual is a condition of contact `{}`", contact.name()));
                     }

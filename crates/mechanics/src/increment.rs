@@ -80,7 +80,7 @@ impl System {
     /// Places that are not there.
     pub fn sites(&self, contact: usize, state: &SystemState) -> Result<Vec<SiteResult>, IncrementError> {
         let found = self.sites_at_limit(contact, state)?;
-        let has_friction = self.contacts[contact].law().is_some();
+        let has_friction = self.contacts[contact].friction().is_some();
         Ok(if has_friction { with_rest(found, self.size()) } else { found })
     }
 
@@ -150,14 +150,14 @@ impl System {
         if let Some((k, share)) = self.first_passage(from, &start)? {
             return Err(IncrementError::PassesThrough { contact: self.contacts[k].name().to_string(), share });
         }
-        start.multipliers = self.contacts.iter().flat_map(|c| c.previous_multipliers()).collect();
+        start.multipliers = self.contacts.iter().flat_map(|c| c.law().multipliers()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
-        self.contacts.iter_mut().for_each(|c| c.begin(time));
+        self.contacts.iter_mut().for_each(|c| c.begin_increment(time));
         Ok(start)
     }
 
     pub(crate) fn end(&mut self) {
-        self.contacts.iter_mut().for_each(|c| c.end());
+        self.contacts.iter_mut().for_each(|c| c.law_mut().end());
     }
 
     /// Tells what lies inside of a rigid body in a state: where nothing sees it, or at the start deeper than an interference.
@@ -195,7 +195,7 @@ impl System {
                 report(done, r)
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
-            let exact = self.contacts.iter().any(|c| c.is_exact());
+            let exact = self.contacts.iter().any(|c| c.law().is_exact());
             if exact && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
                 state.multipliers = self.initial_multipliers(&state, time)?;
             }
@@ -275,9 +275,9 @@ impl System {
 
     /// What is done while the trials of contacts that can be softer are; told whether there are any.
     pub(crate) fn with_scaled_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
-        let softer: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.scale_trials(SOFTER)).collect();
+        let softer: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.law_mut().scale_trials(SOFTER)).collect();
         let found = of(self, softer.contains(&true));
-        self.contacts.iter_mut().for_each(|contact| _ = contact.scale_trials(1.0 / SOFTER));
+        self.contacts.iter_mut().for_each(|contact| _ = contact.law_mut().scale_trials(1.0 / SOFTER));
         found
     }
 
@@ -290,7 +290,7 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
-        let rows = self.contacts.iter().flat_map(|c| c.rows()).collect();
+        let rows = self.contacts.iter().flat_map(|c| c.law().rows()).collect();
         let stiffness = self.stiffness(start)?;
         let mut problem = Problem {
             system: self,

@@ -15,8 +15,8 @@ use crate::inside::{self, Inside};
 use crate::part::Part;
 use crate::points::SlavePoint;
 use crate::shown_surface::ShownSurface;
-use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
+use crate::contact_law::ContactLaw;
 use signorini_contact::{Law, Status};
 use signorini_solve::general::Entries;
 
@@ -83,67 +83,16 @@ pub struct NotItsHistory {
 }
 
 /// Something between two bodies of a system, or within one.
-pub trait Interaction: Send + Sync {
+pub trait Interaction: Iterated + Passing + Drawn + Send + Sync {
     fn name(&self) -> &str;
 
     /// The parts of bodies that may touch: that on which the reported forces act first.
     fn parts(&self) -> [&Part; 2];
 
-    /// Numbers of their bodies. Twice the same within a body.
-    fn bodies(&self) -> [usize; 2] {
-        self.parts().map(|part| part.body)
-    }
+    /// Law, enforcement, and the tractions that are unknowns.
+    fn law(&self) -> &ContactLaw;
 
-    /// A contact of points, as such.
-    fn as_points(&self) -> Option<&Contact> {
-        None
-    }
-
-    fn as_points_mut(&mut self) -> Option<&mut Contact> {
-        None
-    }
-
-    /// The law of friction; none if there is none.
-    fn law(&self) -> Option<&dyn Law>;
-
-    /// The same, to put another in its place; none of what never rubs.
-    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
-        None
-    }
-
-    /// Unknowns of its own: of each the traction per gap, which scales its equation, and the weight of its site.
-    fn rows(&self) -> Vec<[f64; 2]> {
-        Vec::new()
-    }
-
-    /// Values of its unknowns with which an increment starts: those of the last state.
-    fn previous_multipliers(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// The least gap in a state, if it can guess what carries a body that nothing else holds.
-    fn least_gap(&self, _at: Bodies<'_>) -> Option<f64> {
-        None
-    }
-
-    /// Values of its unknowns that would bear forces that are out of balance without them; none where that is no good guess.
-    fn initial_multipliers(&self, _at: Bodies<'_>, _residual: &[f64]) -> Vec<f64> {
-        self.previous_multipliers()
-    }
-
-    /// Why a state may have none near it, in words with the place.
-    fn ill_conditioning(&self, _at: Bodies<'_>) -> Option<String> {
-        None
-    }
-
-    /// Whether its unknowns are exact multipliers, which need a guess of what carries.
-    fn is_exact(&self) -> bool {
-        false
-    }
-
-    /// Begins an increment to a time, and ends it.
-    fn begin(&mut self, _time: f64) {}
-    fn end(&mut self) {}
+    fn law_mut(&mut self) -> &mut ContactLaw;
 
     /// The largest stiffness of what is tested or touched, as force per length; zero if nothing has one.
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64;
@@ -151,25 +100,11 @@ pub trait Interaction: Send + Sync {
     /// Sets penalties from the stiffness of the bodies, or where they have none from that given. Called once.
     fn prepare(&mut self, bodies: &[Box<dyn Body>], otherwise: f64);
 
-    /// Scales the stiffness of its trials, not that of its penalties: the states are the same, the way to them is another.
-    /// Whether it has trials.
-    fn scale_trials(&mut self, _factor: f64) -> bool {
-        false
-    }
-
-    /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
-    fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
-
     /// Adds residual and, if there is room for it, tangent; how many points could not be measured.
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn add_to(
-        &self,
-        at: Bodies<'_>,
-        own: InteractionUnknowns<'_>,
-        out: &mut Assembler<'_>,
-    ) -> Result<usize, PlaceError>;
+    fn add_to(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>, out: &mut Assembler<'_>) -> Result<usize, PlaceError>;
 
     /// The points that are tested as they are found in a state.
     ///
@@ -177,51 +112,11 @@ pub trait Interaction: Send + Sync {
     /// Bodies that cannot be tested or touched.
     fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError>;
 
-    /// The surface of the first body as it is drawn in a state, between the points of [`Interaction::results`]; none of what
-    /// has no faces.
-    ///
-    /// # Errors
-    /// Bodies that cannot be tested or touched.
-    fn surface(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
-        Ok(None)
-    }
-
-    /// The prediction with which an increment starts.
-    fn prediction(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// What a share of a step of all unknowns of the system predicts, from the state before it.
-    fn predict(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// The share of a way between two states of the bodies that may be followed until something passes through; 1 where
-    /// nothing does.
-    ///
-    /// # Errors
-    /// Bodies that cannot be tested or touched.
-    fn free_way(&self, _way: StatePath<'_>) -> Result<f64, PlaceError> {
-        Ok(1.0)
-    }
-
-    /// What lies inside of a rigid body in a state where nothing sees it; at the start also what lies in it deeper than an
-    /// interference that contact could undo.
-    ///
-    /// # Errors
-    /// Bodies that cannot be tested or touched.
-    fn inside(&self, _at: Bodies<'_>, _is_start: bool) -> Result<Option<Inside>, PlaceError> {
-        Ok(None)
-    }
-
     /// Takes a state as the one from which slips count and the next increment starts.
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
     fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError>;
-
-    /// Forgets what it carried, not where slips count from.
-    fn unload(&mut self);
 
     /// Prepares the next outer iteration at a state with the results found in it: multipliers that are kept while Newton's
     /// method runs take the tractions, penalties what leaves the penetration that is wanted. The largest relative change.
@@ -236,12 +131,6 @@ pub trait Interaction: Send + Sync {
         around: OuterIteration,
     ) -> Result<f64, PlaceError>;
 
-    /// Until [`Interaction::restore_law`]: penalties in place of multipliers, with a simpler friction where that is asked for.
-    fn simplify(&mut self, friction: SimplerFriction);
-
-    /// Ends what [`Interaction::simplify`] began.
-    fn restore_law(&mut self);
-
     /// History and scales as plain numbers.
     fn history(&self) -> [Vec<f64>; 2];
 
@@ -250,6 +139,109 @@ pub trait Interaction: Send + Sync {
     /// # Errors
     /// Numbers of something else.
     fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory>;
+}
+
+impl dyn Interaction + '_ {
+    /// Numbers of the bodies. Twice the same within a body.
+    pub fn bodies(&self) -> [usize; 2] {
+        self.parts().map(|part| part.body)
+    }
+
+    /// Begins an increment to a time.
+    pub(crate) fn begin_increment(&mut self, time: f64) {
+        self.law_mut().times[1] = time;
+        self.begin(time);
+    }
+
+    /// Forgets what it carried, not where slips count from.
+    pub(crate) fn forget_tractions(&mut self) {
+        self.law_mut().unload();
+        self.unload();
+    }
+
+    /// The law of friction; none if there is none.
+    pub fn friction(&self) -> Option<&dyn Law> {
+        self.law().friction.as_deref()
+    }
+}
+
+/// What Newton's method asks of an interaction besides residual and tangent.
+pub trait Iterated {
+    /// Begins an increment to a time.
+    fn begin(&mut self, _time: f64) {}
+
+    /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
+    fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
+
+    /// Forgets what it carried besides the tractions of its law, not where slips count from.
+    fn unload(&mut self) {}
+
+    /// Values of its unknowns that would bear forces that are out of balance without them; none where that is no good start.
+    fn initial_multipliers(&self, _at: Bodies<'_>, _residual: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The least gap in a state, if [`initial_multipliers`](Iterated::initial_multipliers) may carry a body that nothing else holds.
+    fn least_gap(&self, _at: Bodies<'_>) -> Option<f64> {
+        None
+    }
+
+    /// Why a state may have none near it, in words with the place.
+    fn ill_conditioning(&self, _at: Bodies<'_>) -> Option<String> {
+        None
+    }
+
+    /// The prediction with which an increment starts.
+    fn prediction(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What a share of a step of all unknowns of the system predicts, from the state before it.
+    fn predict(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>, _step: &[f64], _share: f64) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// What keeps bodies from passing through each other between two states.
+pub trait Passing {
+    /// The share of a path between two states of the bodies that may be followed until something passes through; 1 where
+    /// nothing does.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn free_way(&self, _path: StatePath<'_>) -> Result<f64, PlaceError> {
+        Ok(1.0)
+    }
+
+    /// What lies inside of a rigid body in a state where nothing sees it; at the start also what lies in it deeper than an
+    /// interference that contact could undo.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn inside(&self, _at: Bodies<'_>, _is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        Ok(None)
+    }
+}
+
+/// How an interaction is looked at from outside.
+pub trait Drawn {
+    /// A contact of points, as such.
+    fn as_points(&self) -> Option<&Contact> {
+        None
+    }
+
+    fn as_points_mut(&mut self) -> Option<&mut Contact> {
+        None
+    }
+
+    /// The surface of the first body as it is drawn in a state, between the points of [`Interaction::results`]; none of what
+    /// has no faces.
+    ///
+    /// # Errors
+    /// Bodies that cannot be tested or touched.
+    fn surface(&self, _at: Bodies<'_>, _own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+        Ok(None)
+    }
 }
 
 /// The part of a change that the next outer iteration may leave.

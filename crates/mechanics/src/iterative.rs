@@ -41,7 +41,7 @@ impl System {
             LinearSolver::Iterative => true,
             LinearSolver::Automatic => moved().map(|b| b.unknowns()).sum::<usize>() > many,
         };
-        Ok(wanted && !self.contacts.iter().any(|c| c.is_exact()) && self.held(&state.bodies, 0.0)?.1.is_empty())
+        Ok(wanted && !self.contacts.iter().any(|c| c.law().is_exact()) && self.held(&state.bodies, 0.0)?.1.is_empty())
     }
 
     /// Whether iterations are chosen at the start, to be told.

@@ -7,7 +7,7 @@
 //! - [`pair`]: gap and slip of a contact pair in the unknowns of its bodies.
 //! - [`surface`]: what a surface of faces is to contact by mortar, which is [`mortar`].
 //! - `density`: how densely a body is tested against faces.
-//! - [`contact`]: law and enforcement at the sites of two sides.
+//! - [`contact_law`]: law and enforcement at a point; [`contact`]: the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
@@ -23,6 +23,7 @@ pub mod body;
 mod branch;
 pub mod condensed;
 pub mod contact;
+pub mod contact_law;
 pub mod curve;
 mod density;
 mod eliminated;
@@ -61,13 +62,14 @@ pub use body::{
     Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError, Samples,
 };
 pub use contact::{Contact, Pairing, SiteMemory};
+pub use contact_law::ContactLaw;
 pub use curve::Curve;
 pub use density::test_densely;
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
 pub use inside::Inside;
-pub use interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
+pub use interaction::{Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, Passing};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::Mortar;
 pub use pair::AxisChoice;

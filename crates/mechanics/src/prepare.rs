@@ -27,7 +27,7 @@ impl System {
         self.contacts.iter_mut().for_each(|contact| contact.leave_out_held(at, &held));
         // Slips count from the start, where nothing carries yet.
         self.accept(&self.start())?;
-        self.contacts.iter_mut().for_each(|contact| contact.unload());
+        self.contacts.iter_mut().for_each(|contact| contact.forget_tractions());
         Ok(())
     }
 

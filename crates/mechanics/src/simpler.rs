@@ -1,7 +1,5 @@
-//! What a contact is replaced by while a start is looked for: a penalty in place of what enforces it, and friction without a
-//! limit where that is asked for.
+//! The friction of a contact while a start is looked for: without a limit where that is asked for.
 
-use crate::enforcement::Enforcement;
 use signorini_contact::Law;
 use signorini_contact::law::{Friction, stuck};
 
@@ -21,39 +19,6 @@ impl SimplerFriction {
             Self::Stated => None,
             Self::Sticks => law.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks))),
         }
-    }
-}
-
-/// What a contact states, as long as something simpler stands in its place.
-pub(crate) struct SetAside {
-    /// None where it stayed.
-    law: Option<Box<dyn Law>>,
-    enforcement: Enforcement,
-    softness: f64,
-}
-
-impl SetAside {
-    /// Puts a penalty, and the friction that is asked for, in the place of what is stated.
-    pub fn new(
-        friction: SimplerFriction,
-        law: &mut Option<Box<dyn Law>>,
-        (enforcement, softness): (&mut Enforcement, &mut f64),
-    ) -> Self {
-        let law = friction.instead_of(law);
-        let penalty = Enforcement::Penalty { wanted_penetration: None };
-        SetAside {
-            law,
-            enforcement: std::mem::replace(enforcement, penalty),
-            softness: std::mem::replace(softness, penalty.softness()),
-        }
-    }
-
-    /// Puts it back.
-    pub fn put_back(self, law: &mut Option<Box<dyn Law>>, (enforcement, softness): (&mut Enforcement, &mut f64)) {
-        if self.law.is_some() {
-            *law = self.law;
-        }
-        (*enforcement, *softness) = (self.enforcement, self.softness);
     }
 }
 

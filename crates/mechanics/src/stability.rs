@@ -16,7 +16,7 @@ use crate::increment_error::IncrementError;
 use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
 use nalgebra::{DMatrix, DVector};
-use signorini_contact::law::Friction;
+use signorini_contact::law::{Friction, LawPoint};
 use signorini_contact::{Law, Status};
 use signorini_solve::general::{Analysis, Entries, Matrix};
 use signorini_solve::ldlt::Ldlt;
@@ -157,7 +157,7 @@ impl System {
 
     /// Whether a site of a contact with friction slips.
     fn slips(&self, at: &SystemState) -> Result<bool, IncrementError> {
-        for (k, _) in self.contacts.iter().enumerate().filter(|(_, contact)| contact.law().is_some()) {
+        for (k, _) in self.contacts.iter().enumerate().filter(|(_, contact)| contact.friction().is_some()) {
             if self.sites_at_limit(k, at)?.iter().any(|site| site.status == Status::Slip) {
                 return Ok(true);
             }
@@ -169,7 +169,7 @@ impl System {
     fn with_given_friction<T>(&mut self, of: impl FnOnce(&Self) -> T) -> T {
         let stated: Vec<Option<Arc<Box<dyn Law>>>> = (self.contacts.iter_mut())
             .map(|contact| {
-                let law = contact.friction_mut()?;
+                let law = &mut contact.law_mut().friction;
                 let stated = Arc::new(law.take()?);
                 *law = Some(Box::new(FixedFriction(Arc::clone(&stated))));
                 Some(stated)
@@ -177,9 +177,10 @@ impl System {
             .collect();
         let found = of(self);
         for (contact, stated) in self.contacts.iter_mut().zip(stated) {
-            if let (Some(law), Some(stated)) = (contact.friction_mut(), stated) {
-                *law = None;
-                *law = Arc::into_inner(stated);
+            if let Some(stated) = stated {
+                // The last holder of the law but this one goes first.
+                contact.law_mut().friction = None;
+                contact.law_mut().friction = Arc::into_inner(stated);
             }
         }
         found
@@ -200,8 +201,20 @@ impl Law for FixedFriction {
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         Self::without_pressure(self.0.friction(trial, pressure))
     }
-    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
-        Self::without_pressure(self.0.friction_in_time(trial, pressure, per_velocity))
+    fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
+        Self::without_pressure(self.0.friction_at(trial, pressure, point))
+    }
+
+    fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {
+        self.0.pressure(trial, point)
+    }
+
+    fn range(&self) -> f64 {
+        self.0.range()
+    }
+
+    fn is_compliant(&self) -> bool {
+        self.0.is_compliant()
     }
     fn utilisation(&self, traction: [f64; 2], pressure: f64) -> f64 {
         self.0.utilisation(traction, pressure)

@@ -212,7 +212,7 @@ impl System {
         SystemState {
             time: 0.0,
             bodies: self.bodies.iter().map(|b| b.start()).collect(),
-            multipliers: vec![0.0; self.contacts.iter().map(|c| c.rows().len()).sum()],
+            multipliers: vec![0.0; self.contacts.iter().map(|c| c.law().rows().count()).sum()],
             reactions: Vec::new(),
             predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
@@ -230,7 +230,7 @@ impl System {
         let mut done = 0;
         (self.contacts.iter().enumerate())
             .map(|(k, contact)| {
-                let size = contact.rows().len();
+                let size = contact.law().rows().count();
                 let multipliers = &state.multipliers[done..done + size];
                 let first = (count + done) as u32;
                 done += size;

@@ -92,7 +92,7 @@ fn wrapped(elements: usize, is_smooth: bool) {
         false => (Sampling::Nodes, Enforcement::Multiplier),
     };
     let mut contact = Contact::new("wrap", side(0), side(1), sampling, how).expect("points");
-    contact.friction = Some(Box::new(Coulomb::isotropic(0.3).expect("a coefficient")));
+    contact.law.friction = Some(Box::new(Coulomb::isotropic(0.3).expect("a coefficient")));
     system.contacts.push(Box::new(contact));
     run(if is_smooth { "smooth rope" } else { "rope" }, elements, 4, system);
 }

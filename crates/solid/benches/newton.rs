@@ -49,11 +49,11 @@ fn run(n: usize, by_mortar: bool, mu: Option<f64>) {
     let law = mu.map(|mu| Box::new(Coulomb::isotropic(mu).expect("a coefficient")) as _);
     let contact: Box<dyn Interaction> = if by_mortar {
         let mut contact = Mortar::new("touch", slave, master, how).expect("faces");
-        contact.friction = law;
+        contact.law.friction = law;
         Box::new(contact)
     } else {
         let mut contact = Contact::new("touch", slave, master, Sampling::Nodes, how).expect("nodes");
-        contact.friction = law;
+        contact.law.friction = law;
         Box::new(contact)
     };
     system.contacts.push(contact);

@@ -71,7 +71,7 @@ fn pushed(depth: f64) -> [f64; 2] {
     let [slave, master] = sides.map(|(part, body)| (part, bodies[body].as_ref()));
     let mut contact = Mortar::new("touch", slave, master, Enforcement::Multiplier).expect("faces");
     let coulomb = Coulomb::isotropic(MU).expect("a coefficient");
-    contact.friction = Some(Box::new(Capped { coulomb, strength: Tresca::new(STRENGTH).expect("a limit") }));
+    contact.law.friction = Some(Box::new(Capped { coulomb, strength: Tresca::new(STRENGTH).expect("a limit") }));
 
     // Until time 1 downwards, until time 2 along x.
     let along: TimeField = Arc::new(|_, t| 0.2 * (t - 1.0).max(0.0));

@@ -56,16 +56,48 @@ pub struct LawError {
     pub value: f64,
 }
 
-/// A law of friction.
+/// What a law is told of the point besides its trial.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LawPoint {
+    /// The scale `c` of the trial: traction per gap, and per slip.
+    pub per_gap: f64,
+    /// Time that passes in the increment; zero where none does.
+    pub duration: f64,
+}
+
+impl LawPoint {
+    /// What the trial gains per velocity of slip.
+    pub fn per_velocity(&self) -> f64 {
+        self.per_gap * self.duration
+    }
+}
+
+/// A law of contact: friction, and the pressure, which may not be negative if a law says nothing else.
 pub trait Law: std::fmt::Debug + Send + Sync {
     /// The admissible friction traction closest to the trial, under a pressure that is positive.
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction;
 
-    /// The same in time, for laws that know the velocity of slip: it adds `per_velocity` times itself to the trial. Zero
-    /// where no time passes.
-    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
-        let _ = per_velocity;
+    /// The same for laws that know the point, such as the velocity of slip `(ζ - T)/per_velocity` there.
+    fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
+        let _ = point;
         self.friction(trial, pressure)
+    }
+
+    /// The pressure under its trial, with its derivative. A law `p = f(g)` that gives way is an implicit function of the trial
+    /// `ζ = λ - c g`: `p` with `p = f((p - ζ)/c)`, which is increasing in `ζ` if `f` is decreasing.
+    fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {
+        let _ = point;
+        if trial > 0.0 { [trial, 1.0] } else { [0.0, 0.0] }
+    }
+
+    /// The largest gap across which it transmits a traction.
+    fn range(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether [`pressure`](Law::pressure) is another one than that of bodies that may not penetrate.
+    fn is_compliant(&self) -> bool {
+        false
     }
 
     /// Whether friction depends on the velocity of slip.
@@ -93,26 +125,41 @@ pub trait Law: std::fmt::Debug + Send + Sync {
         self.per_pressure().map_or(0.0, |mu| (mu[0] * w[0]).hypot(mu[1] * w[1]))
     }
 
-    /// The admissible traction closest to the trial: a pressure that is not negative, and friction.
+    /// The admissible traction closest to the trial where no time passes: pressure and friction.
     fn project(&self, trial: [f64; 3]) -> Projected {
-        self.project_in_time(trial, 0.0)
+        self.traction(trial, &LawPoint::default())
     }
 
-    /// The same in time, as of [`Law::friction_in_time`].
-    fn project_in_time(&self, trial: [f64; 3], per_velocity: f64) -> Projected {
-        let pressure = trial[0];
-        if pressure.is_nan() || pressure <= 0.0 {
+    /// The traction under a trial: pressure, and the friction that it makes available.
+    fn traction(&self, trial: [f64; 3], point: &LawPoint) -> Projected {
+        let [pressure, by_trial] = self.pressure(trial[0], point);
+        if by_trial == 0.0 && pressure == 0.0 {
             return Projected::default();
         }
-        let friction = self.friction_in_time([trial[1], trial[2]], pressure, per_velocity);
+        if pressure <= 0.0 {
+            // Held together: nothing rubs.
+            let derivative = [[by_trial, 0.0, 0.0], [0.0; 3], [0.0; 3]];
+            return Projected { traction: [pressure, 0.0, 0.0], derivative, status: Status::Slip };
+        }
+        let friction = self.friction_at([trial[1], trial[2]], pressure, point);
         let [t, r, d] = [friction.traction, friction.by_pressure, friction.by_trial[0]];
         let e = friction.by_trial[1];
         Projected {
             traction: [pressure, t[0], t[1]],
-            derivative: [[1.0, 0.0, 0.0], [r[0], d[0], d[1]], [r[1], e[0], e[1]]],
+            derivative: [[by_trial, 0.0, 0.0], [r[0] * by_trial, d[0], d[1]], [r[1] * by_trial, e[0], e[1]]],
             status: if friction.slips { Status::Slip } else { Status::Stick },
         }
     }
+}
+
+/// The traction without friction: the trial of the pressure, if it presses.
+pub fn frictionless(trial: f64) -> Projected {
+    if trial > 0.0 {
+        let mut out = Projected { traction: [trial, 0.0, 0.0], status: Status::Slip, ..Projected::default() };
+        out.derivative[0][0] = 1.0;
+        return out;
+    }
+    Projected::default()
 }
 
 /// A law that several contacts share.
@@ -120,8 +167,17 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         (**self).friction(trial, pressure)
     }
-    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
-        (**self).friction_in_time(trial, pressure, per_velocity)
+    fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
+        (**self).friction_at(trial, pressure, point)
+    }
+    fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {
+        (**self).pressure(trial, point)
+    }
+    fn range(&self) -> f64 {
+        (**self).range()
+    }
+    fn is_compliant(&self) -> bool {
+        (**self).is_compliant()
     }
     fn is_rate_dependent(&self) -> bool {
         (**self).is_rate_dependent()
@@ -135,8 +191,8 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     fn coupling(&self, w: [f64; 2]) -> f64 {
         (**self).coupling(w)
     }
-    fn project_in_time(&self, trial: [f64; 3], per_velocity: f64) -> Projected {
-        (**self).project_in_time(trial, per_velocity)
+    fn traction(&self, trial: [f64; 3], point: &LawPoint) -> Projected {
+        (**self).traction(trial, point)
     }
 }
 

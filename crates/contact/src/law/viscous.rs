@@ -11,7 +11,7 @@
 //!
 //! In no time (`ρ = 0`) it is the law of Coulomb.
 
-use super::{Coulomb, Friction, Law, LawError, checked};
+use super::{Coulomb, Friction, Law, LawError, LawPoint, checked};
 
 /// Coulomb's law, isotropic, regularised below a velocity of slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,8 +51,8 @@ impl Law for Viscous {
         self.limit.friction(trial, pressure)
     }
 
-    fn friction_in_time(&self, trial: [f64; 2], pressure: f64, per_velocity: f64) -> Friction {
-        let scale = per_velocity * self.velocity;
+    fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
+        let scale = point.per_velocity() * self.velocity;
         let most = self.mu * pressure;
         if scale <= 0.0 || most <= 0.0 {
             return self.limit.friction(trial, pressure);

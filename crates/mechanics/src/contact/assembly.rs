@@ -7,6 +7,7 @@ use crate::pair::NoPair;
 use crate::points::Sampling;
 use rayon::prelude::*;
 use signorini_contact::Status;
+use signorini_contact::law::Projected;
 
 impl Contact {
     /// Adds the contact to residual and tangent. `lambda` are its own unknowns, if it has any, and `first` the number of
@@ -26,7 +27,7 @@ impl Contact {
         let mut lost = 0;
         // Pairs are found side by side and added one after the other.
         let find = |k: usize| {
-            let at = self.multiplier(k, lambda);
+            let at = self.law.multiplier(k, lambda);
             let is_closed = |touch: &MeasuredPair| {
                 linearises && self.traction(k, touch, at, [0.0; 2]).projected.status != Status::Open
             };
@@ -46,21 +47,14 @@ impl Contact {
         };
         for (k, (found, redistributed)) in (0..count).step_by(at_once).flat_map(found_in).enumerate() {
             let own = |i: usize| first + (parts * k + i) as u32;
-            let at = self.multiplier(k, lambda);
+            let at = self.law.multiplier(k, lambda);
             let w = self.sites[k].weight;
-            let c = self.stiffness[k];
+            let c = self.law.stiffness[k];
             let touch = match found {
                 Some(Ok(touch)) => touch,
                 found => {
                     lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
-                    // Open: the traction is to vanish.
-                    for i in 0..parts {
-                        out.residual[own(i) as usize] -= w / c * at[i];
-                        out.sizes[own(i) as usize] += w / c * at[i].abs();
-                        if let Some(tangent) = &mut out.tangent {
-                            tangent.add(own(i), own(i), -w / c);
-                        }
-                    }
+                    self.law.add_equations(k, own(0), at, &Projected::default(), out);
                     continue;
                 }
             };
@@ -75,19 +69,10 @@ impl Contact {
                 out.residual[unknown as usize] += force;
                 out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + has_friction.abs();
             }
-            for i in 0..parts {
-                let value = w / c * (found.projected.traction[i] - at[i]);
-                out.residual[own(i) as usize] += value;
-                out.sizes[own(i) as usize] += w / c * (found.projected.traction[i].abs() + at[i].abs());
-            }
-            let Some(tangent) = &mut out.tangent else { continue };
-            if found.projected.status == Status::Open {
-                // Neither force nor stiffness, but that the tractions are to vanish.
-                for i in 0..parts {
-                    tangent.add(own(i), own(i), -w / c * (1.0 + UNDETERMINED));
-                }
+            self.law.add_equations(k, own(0), at, &found.projected, out);
+            let Some(tangent) = out.tangent.as_mut().filter(|_| found.projected.status != Status::Open) else {
                 continue;
-            }
+            };
             // Derivatives of the trial in the unknowns of the pair.
             let d_trial: Vec<[f64; 3]> = (0..n)
                 .map(|b| {
@@ -121,7 +106,7 @@ impl Contact {
             }
             tangent.add_block(&pair.unknowns, &block);
             // What of the trial follows the unknown itself.
-            let follows = 1.0 - self.softness;
+            let follows = 1.0 - self.law.softness;
             for i in 0..parts {
                 for (a, &unknown) in pair.unknowns.iter().enumerate() {
                     let mut column = -derivative[0][i] * pair.opening[a];
@@ -131,12 +116,6 @@ impl Contact {
                     tangent.add(unknown, own(i), w * follows * column);
                     tangent.add(own(i), unknown, w / c * d_traction[a][i]);
                 }
-                for j in 0..parts {
-                    // Tractions that nothing determines stay where they are.
-                    let own_part = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
-                    let value = follows * derivative[i][j] - own_part;
-                    tangent.add(own(i), own(j), w / c * value);
-                }
             }
         }
         Ok(lost)
@@ -145,7 +124,3 @@ impl Contact {
 
 /// Sites whose pairs are kept at a time.
 const AT_ONCE: usize = 256;
-
-/// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
-/// points of a stiff body carry together need not be unique.
-const UNDETERMINED: f64 = 1e-6;

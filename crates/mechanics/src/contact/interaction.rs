@@ -4,19 +4,17 @@ use super::partners::Partners;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
-use crate::enforcement::{Outer, SOFTER, WAVE};
+use crate::enforcement::{SOFTER, WAVE};
 use crate::inside::Inside;
+use crate::contact_law::ContactLaw;
 use crate::interaction::{
-    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, StatePath, hardened, take_over,
-    towards,
+    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing, StatePath,
 };
 use crate::pair::Stuck;
 use crate::part::Part;
 use crate::points::{MaterialPoint, Sampling, Site};
 use crate::shown_surface::{ShownSurface, between_sites};
-use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
-use signorini_contact::Law;
 use signorini_geometry::{Point, Vector};
 
 impl<'a> Bodies<'a> {
@@ -49,73 +47,16 @@ impl Interaction for Contact {
         [&self.slave, &self.master]
     }
 
-    fn as_points(&self) -> Option<&Contact> {
-        Some(self)
+    fn law(&self) -> &ContactLaw {
+        &self.law
     }
 
-    fn as_points_mut(&mut self) -> Option<&mut Contact> {
-        Some(self)
-    }
-
-    fn law(&self) -> Option<&dyn Law> {
-        self.friction.as_deref()
-    }
-
-    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
-        Some(&mut self.friction)
-    }
-
-    fn rows(&self) -> Vec<[f64; 2]> {
-        let list = self.stiffness.iter().zip(self.sites());
-        list.flat_map(|(c, site)| vec![[*c, site.weight]; self.components()]).collect()
-    }
-
-    fn previous_multipliers(&self) -> Vec<f64> {
-        self.memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
-    }
-
-    /// A curve under tension presses on what it lies along: what is out of balance at its nodes tells by how much.
-    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
-        let mut out = self.previous_multipliers();
-        let sides = at.sides(self);
-        let (body, state) = sides.master;
-        let is_curve = sides.slave.0.curve(self.slave.group.as_deref()).is_some();
-        let Ok(master) = body.master(self.master.group.as_deref(), state) else { return out };
-        if !is_curve || self.sampling != Sampling::Nodes {
-            return out;
-        }
-        let own = sides.first[0] as usize..sides.first[0] as usize + sides.slave.0.unknowns();
-        for (k, values) in out.chunks_mut(self.components()).enumerate() {
-            let (_, Some(Ok(touch))) = self.pair(k, &sides, (master.as_ref(), f64::INFINITY), |_| false) else {
-                continue;
-            };
-            let terms = touch.pair.unknowns.iter().zip(&touch.pair.opening);
-            let terms = terms.map(|(u, o)| (*u as usize, o)).filter(|(u, _)| own.contains(u));
-            let (power, square) = terms.fold((0.0, 0.0), |(p, s), (u, o)| (p + residual[u] * o, s + o * o));
-            // Of what lies so far away that a force like this would not close it nothing is known.
-            let pressure = power / (square * self.sites()[k].weight);
-            if pressure > self.stiffness[k] * touch.pair.gap.max(0.0) {
-                values[0] = pressure;
-            }
-        }
-        out
-    }
-
-    fn is_exact(&self) -> bool {
-        self.enforcement.is_exact()
-    }
-
-    fn begin(&mut self, time: f64) {
-        self.partners = Partners::new();
-        self.times[1] = time;
-    }
-
-    fn end(&mut self) {
-        self.softness = self.enforcement.softness();
+    fn law_mut(&mut self) -> &mut ContactLaw {
+        &mut self.law
     }
 
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
-        let own = self.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
+        let own = self.law.stiffness.iter().zip(self.sites()).map(|(c, s)| c * s.weight);
         // A deformable master of a rigid slave.
         let touched = Some(self.master_stiffness(bodies));
         own.chain(touched).filter(|c| c.is_finite()).fold(0.0, f64::max)
@@ -129,12 +70,68 @@ impl Interaction for Contact {
             false => [f64::INFINITY, 1.0],
         };
         let weights: Vec<f64> = self.sites().iter().map(|s| s.weight).collect();
-        if self.enforcement.takes_stress() {
+        if self.law.enforcement.takes_stress() {
             return;
         }
-        for (c, w) in self.stiffness.iter_mut().zip(weights) {
+        for (c, w) in self.law.stiffness.iter_mut().zip(weights) {
             *c = WAVE * share * if c.is_finite() { c.min(given_way / w) } else { otherwise / w };
         }
+    }
+
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError> {
+        self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
+    }
+
+    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
+        Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
+    }
+
+    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
+        let sides = at.sides(self);
+        self.accept_sites(&sides, own.multipliers)
+    }
+
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        found: &[SiteResult],
+        around: OuterIteration,
+    ) -> Result<f64, PlaceError> {
+        let tractions = match self.law.takes_over() {
+            true => self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect(),
+            false => Vec::new(),
+        };
+        Ok(self.law.augment(found, &around, &tractions))
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        let turned = self.turned.iter().flat_map(|t| t.iter().copied());
+        let scales = self.law.stiffness.iter().copied().chain([self.law.times[0]]).chain(turned).collect();
+        [self.law.kept.iter().zip(&self.memory).flat_map(numbers).collect(), scales]
+    }
+
+    fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        let count = self.law.stiffness.len();
+        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
+            return Err(NotItsHistory { contact: self.name.clone() });
+        }
+        (self.law.kept, self.memory) = sites.chunks(NUMBERS).map(memory).unzip();
+        self.law.stiffness.copy_from_slice(&scales[..count]);
+        self.law.times = [scales[count]; 2];
+        self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
+        Ok(())
+    }
+}
+
+impl Iterated for Contact {
+    fn begin(&mut self, _: f64) {
+        self.partners = Partners::new();
     }
 
     fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
@@ -152,13 +149,53 @@ impl Interaction for Contact {
         self.keep(&kept);
     }
 
-    fn add_to(
-        &self,
-        at: Bodies<'_>,
-        own: InteractionUnknowns<'_>,
-        out: &mut Assembler<'_>,
-    ) -> Result<usize, PlaceError> {
-        self.add_sites(&at.sides(self), (own.multipliers, own.first), out)
+    /// A curve under tension presses on what it lies along: what is out of balance at its nodes tells by how much.
+    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Option<Vec<f64>> {
+        let mut out = self.law.multipliers();
+        let sides = at.sides(self);
+        let (body, state) = sides.master;
+        let is_curve = sides.slave.0.curve(self.slave.group.as_deref()).is_some();
+        let master = body.master(self.master.group.as_deref(), state).ok()?;
+        if !is_curve || self.sampling != Sampling::Nodes {
+            return None;
+        }
+        let own = sides.first[0] as usize..sides.first[0] as usize + sides.slave.0.unknowns();
+        for (k, values) in out.chunks_mut(self.components()).enumerate() {
+            let (_, Some(Ok(touch))) = self.pair(k, &sides, (master.as_ref(), f64::INFINITY), |_| false) else {
+                continue;
+            };
+            let terms = touch.pair.unknowns.iter().zip(&touch.pair.opening);
+            let terms = terms.map(|(u, o)| (*u as usize, o)).filter(|(u, _)| own.contains(u));
+            let (power, square) = terms.fold((0.0, 0.0), |(p, s), (u, o)| (p + residual[u] * o, s + o * o));
+            // Of what lies so far away that a force like this would not close it nothing is known.
+            let pressure = power / (square * self.sites()[k].weight);
+            if pressure > self.law.stiffness[k] * touch.pair.gap.max(0.0) {
+                values[0] = pressure;
+            }
+        }
+        Some(out)
+    }
+}
+
+impl Passing for Contact {
+    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
+        Ok(self.share_of_way(path))
+    }
+
+    fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
+        let (body, state) = at.side(&self.slave);
+        let sites: Vec<_> = self.sites().iter().map(|site| body.placed(state, site)).collect();
+        at.inside([&self.slave, &self.master], &sites, is_start)
+    }
+}
+
+impl Drawn for Contact {
+    fn as_points(&self) -> Option<&Contact> {
+        Some(self)
+    }
+
+    fn as_points_mut(&mut self) -> Option<&mut Contact> {
+        Some(self)
     }
 
     fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
@@ -171,96 +208,14 @@ impl Interaction for Contact {
         let rest: Vec<Point<3>> = self.sites.iter().map(|site| body.placed(&start, site).x).collect();
         Ok(between_sites(surface.as_ref(), &rest, &self.results(at, own)?))
     }
-
-    fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
-        Ok(self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.0).collect())
-    }
-
-    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
-        Ok(self.share_of_way(path))
-    }
-
-    fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
-        let (body, state) = at.side(&self.slave);
-        let sites: Vec<_> = self.sites().iter().map(|site| body.placed(state, site)).collect();
-        at.inside([&self.slave, &self.master], &sites, is_start)
-    }
-
-    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
-        let sides = at.sides(self);
-        self.accept_sites(&sides, own.multipliers)
-    }
-
-    fn unload(&mut self) {
-        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
-    }
-
-    fn augment(
-        &mut self,
-        at: Bodies<'_>,
-        own: InteractionUnknowns<'_>,
-        found: &[SiteResult],
-        around: OuterIteration,
-    ) -> Result<f64, PlaceError> {
-        match self.enforcement.outer() {
-            Outer::TakesOver => {
-                let found = self.found(&at.sides(self), own.multipliers)?.into_iter().map(|f| f.1).collect::<Vec<_>>();
-                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
-                let change = take_over(kept, &found, (&around, self.softness));
-                self.softness = hardened(self.softness, change, &around);
-                Ok(change)
-            }
-            Outer::Towards(wanted) => Ok(towards(wanted, found, &mut self.stiffness)),
-            Outer::Nothing => Ok(0.0),
-        }
-    }
-
-    fn scale_trials(&mut self, factor: f64) -> bool {
-        // Nitsche's method has its stiffness in the state.
-        if self.enforcement.takes_stress() {
-            return false;
-        }
-        self.stiffness.iter_mut().for_each(|c| *c *= factor);
-        self.softness *= factor;
-        true
-    }
-
-    fn simplify(&mut self, friction: SimplerFriction) {
-        let kept = (&mut self.enforcement, &mut self.softness);
-        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
-    }
-
-    fn restore_law(&mut self) {
-        if let Some(stated) = self.set_aside.take() {
-            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
-        }
-    }
-
-    fn history(&self) -> [Vec<f64>; 2] {
-        let turned = self.turned.iter().flat_map(|t| t.iter().copied());
-        let scales = self.stiffness.iter().copied().chain([self.times[0]]).chain(turned).collect();
-        [self.memory.iter().flat_map(numbers).collect(), scales]
-    }
-
-    fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        let count = self.stiffness.len();
-        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
-            return Err(NotItsHistory { contact: self.name.clone() });
-        }
-        self.memory = sites.chunks(NUMBERS).map(memory).collect();
-        self.stiffness.copy_from_slice(&scales[..count]);
-        self.times = [scales[count]; 2];
-        self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
-        Ok(())
-    }
 }
 
 /// Numbers of the memory of a site.
 const NUMBERS: usize = 16;
 
-fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
+fn numbers((traction, memory): (&[f64; 3], &SiteMemory)) -> [f64; NUMBERS] {
     let mut out = [0.0; NUMBERS];
-    out[..3].copy_from_slice(&memory.traction);
+    out[..3].copy_from_slice(traction);
     out[3..5].copy_from_slice(&memory.slip);
     if let Some(stuck) = &memory.stuck {
         out[5] = 1.0;
@@ -272,15 +227,15 @@ fn numbers(memory: &SiteMemory) -> [f64; NUMBERS] {
     out
 }
 
-fn memory(n: &[f64]) -> SiteMemory {
+fn memory(n: &[f64]) -> ([f64; 3], SiteMemory) {
     let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
-    SiteMemory {
-        traction: [n[0], n[1], n[2]],
+    let memory = SiteMemory {
         slip: [n[3], n[4]],
         stuck: (n[5] != 0.0).then(|| Stuck {
             point: MaterialPoint { patch: n[6] as u32, xi: [n[7], n[8], n[9]] },
             on_slave: vector(10),
             on_master: vector(13),
         }),
-    }
+    };
+    ([n[0], n[1], n[2]], memory)
 }

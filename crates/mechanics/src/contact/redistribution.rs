@@ -20,11 +20,11 @@ impl Contact {
         lambda: &[f64],
     ) -> Vec<[f64; 2]> {
         let mut redistributed = vec![[0.0; 2]; found.len()];
-        let Some(law) = self.friction.as_deref() else { return redistributed };
+        let Some(law) = self.law.friction.as_deref() else { return redistributed };
         let sites: Vec<Option<Loaded>> = (found.iter().enumerate())
             .map(|(k, touch)| {
                 let touch = touch.as_ref()?.as_ref().ok()?;
-                let at = self.multiplier(k, lambda);
+                let at = self.law.multiplier(k, lambda);
                 let Traction { projected: found, trial, .. } = self.traction(k, touch, at, [0.0; 2]);
                 if found.status == Status::Slip && at[1] * found.traction[1] + at[2] * found.traction[2] < 0.0 {
                     redistributed[k] = trial.map(|t| -t);

@@ -21,7 +21,7 @@ impl Contact {
             let (x, radius) = (placed.x, placed.radius);
             let mut out = SiteResult { x, radius, weight: self.sites[k].weight, ..SiteResult::default() };
             let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
-            let found = self.traction(k, &touch, self.multiplier(k, lambda), [0.0; 2]);
+            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), [0.0; 2]);
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             out.normal = pair.normal;
@@ -30,7 +30,7 @@ impl Contact {
             out.status = found.projected.status;
             // The traction of the law is that along the slip; on the slave acts its opposite.
             out.friction = -(found.axes[0] * t1 + found.axes[1] * t2);
-            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
+            if let (Some(law), true) = (&self.law.friction, out.status != Status::Open) {
                 out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
                 out.utilisation = law.utilisation([t1, t2], p);
                 let before = self.memory[k].slip;
@@ -55,35 +55,37 @@ impl Contact {
     pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
         let master = self.met(sides)?;
         let now = self.turns(sides, master.as_ref());
-        let mut memory = Vec::with_capacity(self.sites.len());
+        let (mut memory, mut tractions) = (Vec::new(), Vec::new());
         for k in 0..self.sites.len() {
             let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
                 memory.push(SiteMemory::default());
+                tractions.push([0.0; 3]);
                 continue;
             };
-            let found = self.traction(k, &touch, self.multiplier(k, lambda), [0.0; 2]);
+            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), [0.0; 2]);
             let pair = &touch.pair;
-            let mut own = SiteMemory { traction: found.projected.traction, stuck: pair.stuck, slip: [0.0; 2] };
-            if self.friction.is_some() && found.projected.status != Status::Open {
+            let mut own = SiteMemory { stuck: pair.stuck, slip: [0.0; 2] };
+            let mut traction = found.projected.traction;
+            if self.law.friction.is_some() && found.projected.status != Status::Open {
                 let before = self.memory[k].slip;
                 own.slip = std::array::from_fn(|i| before[i] + found.slip[i]);
                 // Friction is kept along the axes of the new anchor.
-                let on_slave = found.axes[0] * own.traction[1] + found.axes[1] * own.traction[2];
+                let on_slave = found.axes[0] * traction[1] + found.axes[1] * traction[2];
                 let slipped = found.axes[0] * own.slip[0] + found.axes[1] * own.slip[1];
                 let (anchored, turned) = (self.memory[k].stuck, self.turned);
                 (self.memory[k].stuck, self.turned) = (own.stuck, now);
                 if let (_, Some(Ok(again))) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false) {
                     let (new, _) = axes(&again.pair);
-                    own.traction[1] = new[0].dot(&on_slave);
-                    own.traction[2] = new[1].dot(&on_slave);
+                    traction = [traction[0], new[0].dot(&on_slave), new[1].dot(&on_slave)];
                     own.slip = new.map(|e| e.dot(&slipped));
                 }
                 (self.memory[k].stuck, self.turned) = (anchored, turned);
             }
             memory.push(own);
+            tractions.push(traction);
         }
         (self.memory, self.turned) = (memory, now);
-        self.times[0] = self.times[1];
+        self.law.accept(tractions);
         Ok(())
     }
 }

@@ -195,7 +195,7 @@ impl Surfaces<'_> {
             let Some(seen) = &point.master else { continue };
             sights.extend(variables.sight(self, (&point.s, seen)).map(|sight| (point, sight)));
         }
-        let mut sums = Sums::new(&variables, contact.friction.is_some(), wanted == Wanted::Tangent);
+        let mut sums = Sums::new(&variables, contact.law.friction.is_some(), wanted == Wanted::Tangent);
         let (mut pushes, mut gaps) = (Rows::new(), Rows::new());
         for (point, sight) in &sights {
             sums.add(sight, &carried.traction_at(&point.shares, &sight.normal));
@@ -245,7 +245,7 @@ impl Surfaces<'_> {
         for (point, sight) in &sights {
             for (node, share) in point.shares.iter().filter(|(node, _)| carried.acts[*node as usize]) {
                 let Some(axes) = contact.axes(*node, &sight.normal) else { continue };
-                for &slot in &contact.slots()[1..] {
+                for &slot in &contact.law.slots()[1..] {
                     let row = row_of(&mut rows, (*node, slot), &variables);
                     let along = axes.e[slot - 1] * *share;
                     sight.movers.iter().for_each(|(k, d, _)| row[*k] += along * *d);

@@ -8,22 +8,21 @@ use super::small::{AtRest, SmallSliding};
 use super::terms::{Assembly, FaceTerms, NodeTractions, Wanted};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
-use crate::enforcement::{Outer, WAVE};
+use crate::enforcement::WAVE;
 use crate::inside::Inside;
+use crate::contact_law::ContactLaw;
 use crate::interaction::{
-    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, StatePath, hardened, take_over,
-    towards,
+    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing, StatePath,
 };
 use crate::pair::{AxisChoice, any_tangent};
 use crate::part::Part;
 use crate::passage::{TrackedPoint, share_of_way};
 use crate::points::{MaterialPoint, SlavePoint};
 use crate::shown_surface::ShownSurface;
-use crate::simpler::{SetAside, SimplerFriction};
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::law::Projected;
-use signorini_contact::{Law, Status};
+use signorini_contact::Status;
 use signorini_geometry::Vector;
 use std::sync::Arc;
 
@@ -58,7 +57,7 @@ impl Mortar {
                 (None, measured, measures)
             }
         };
-        let of = |(k, measure)| self.traction(k, measure, self.multiplier(k, multipliers));
+        let of = |(k, measure)| self.traction(k, measure, self.law.multiplier(k, multipliers));
         let projected = measures.iter().enumerate().map(of).collect();
         Ok(Found { sides, measured, linear, measures, projected })
     }
@@ -83,7 +82,7 @@ impl Mortar {
         for (point, met) in found.measured.points() {
             for (node, share) in &point.shares {
                 let [_, t1, t2] = found.projected[*node as usize].traction;
-                if let Some(axes) = self.axes(*node, &met.normal).filter(|_| self.friction.is_some()) {
+                if let Some(axes) = self.axes(*node, &met.normal).filter(|_| self.law.friction.is_some()) {
                     rubbed[*node as usize] -= (axes.e[0] * t1 + axes.e[1] * t2) * *share;
                 }
             }
@@ -103,7 +102,7 @@ impl Mortar {
             out.pressure = p;
             out.status = projected.status;
             out.friction = rubbed[k] / measure.weight;
-            if let (Some(law), true) = (&self.friction, out.status != Status::Open) {
+            if let (Some(law), true) = (&self.law.friction, out.status != Status::Open) {
                 let axes = self.axes(k as u32, &measure.normal.normalize());
                 out.increment =
                     axes.map_or(Vector::<3>::zeros(), |a| a.e[0] * measure.slip[0] + a.e[1] * measure.slip[1]);
@@ -114,7 +113,8 @@ impl Mortar {
             out
         };
         let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
-        show(&self.nodes, found.sides.slave.faces().0, found.measured.as_ref(), self.law(), &mut results);
+        let law = self.law.friction.as_deref();
+        show(&self.nodes, found.sides.slave.faces().0, found.measured.as_ref(), law, &mut results);
         results
     }
 
@@ -173,79 +173,20 @@ impl Interaction for Mortar {
         [&self.slave, &self.master]
     }
 
-    fn law(&self) -> Option<&dyn Law> {
-        self.friction.as_deref()
+    fn law(&self) -> &ContactLaw {
+        &self.law
     }
 
-    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
-        Some(&mut self.friction)
-    }
-
-    fn rows(&self) -> Vec<[f64; 2]> {
-        let list = self.stiffness.iter().zip(&self.weights);
-        list.flat_map(|(c, w)| vec![[*c, *w]; self.components()]).collect()
-    }
-
-    fn previous_multipliers(&self) -> Vec<f64> {
-        self.memory.iter().flat_map(|m| self.slots().iter().map(|slot| m.traction[*slot])).collect()
-    }
-
-    fn ill_conditioning(&self, _: Bodies<'_>) -> Option<String> {
-        let told = || format!("no part of the slave of contact `{}` faces the master", self.name);
-        self.search.facing.is_away.then(told)
-    }
-
-    fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
-        let found = self.found(at, &self.previous_multipliers()).ok()?;
-        self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
-    }
-
-    /// A body that only contact holds is pressed on it first where the gap is least.
-    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Vec<f64> {
-        let mut out = self.previous_multipliers();
-        let Ok(found) = self.found(at, &out) else { return out };
-        let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
-        let near = NEAREST * at.bodies[self.slave.body].size();
-        let force = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-        for (k, m) in self.seen(&found).filter(|(_, m)| m.gap <= least + near) {
-            out[k * self.components()] = 2.0 * self.stiffness[k] * m.gap.max(0.0) + force / m.weight;
-        }
-        out
-    }
-
-    fn is_exact(&self) -> bool {
-        self.enforcement.is_exact()
-    }
-
-    fn begin(&mut self, time: f64) {
-        self.small.iter_mut().for_each(SmallSliding::forget);
-        self.times[1] = time;
-    }
-
-    fn end(&mut self) {
-        self.softness = self.enforcement.softness();
+    fn law_mut(&mut self) -> &mut ContactLaw {
+        &mut self.law
     }
 
     fn stiffness(&self, _: &[Box<dyn Body>]) -> f64 {
-        self.stiffness.iter().zip(&self.whole).map(|(c, w)| c * w).fold(0.0, f64::max)
+        self.law.stiffness.iter().zip(&self.whole).map(|(c, w)| c * w).fold(0.0, f64::max)
     }
 
     fn prepare(&mut self, _: &[Box<dyn Body>], _: f64) {
-        self.stiffness.iter_mut().for_each(|c| *c *= WAVE);
-    }
-
-    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
-        self.small.iter_mut().for_each(SmallSliding::forget);
-        let Ok(sides) = Sides::new(self, at) else { return };
-        for (k, (face, s)) in self.places.iter().enumerate() {
-            let placed = sides.slave.placed(*face, s);
-            let normal = sides.slave.normal(*face, s).normalize();
-            let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
-            let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
-            self.merged[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
-        }
-        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.search.facing, &self.merged).weight;
-        self.weights = super::weights(&self.whole);
+        self.law.stiffness.iter_mut().for_each(|c| *c *= WAVE);
     }
 
     fn add_to(
@@ -269,15 +210,123 @@ impl Interaction for Mortar {
         Ok(self.node_results(&self.found(at, own.multipliers)?))
     }
 
-    fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
+    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         let found = self.found(at, own.multipliers)?;
-        let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
-        let points = found.measured.as_ref();
-        let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
-        let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
-        Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
+        let (mut memory, mut tractions) = (Vec::new(), Vec::new());
+        for (k, (measure, projected)) in found.measures.iter().zip(&found.projected).enumerate() {
+            let (face, s) = &self.places[k];
+            let normal = match measure.normal.try_normalize(0.0) {
+                Some(normal) => normal,
+                None => -found.sides.slave.normal(*face, s).normalize(),
+            };
+            let mut next = NodeMemory { along: self.along(&found, &normal), ..NodeMemory::default() };
+            let mut traction = projected.traction;
+            if self.law.friction.is_some() && projected.status != Status::Open {
+                let before = self.memory[k].slip;
+                next.slip = std::array::from_fn(|i| before[i] + measure.slip[i]);
+                // Friction goes on along the new axes.
+                if let Some(old) = self.axes(k as u32, &normal) {
+                    self.memory[k].along = next.along;
+                    let new = self.axes(k as u32, &normal).unwrap_or(old);
+                    let turned = |v: [f64; 2]| new.e.map(|e| e.dot(&(old.e[0] * v[0] + old.e[1] * v[1])));
+                    let [p, t1, t2] = traction;
+                    let [t1, t2] = turned([t1, t2]);
+                    traction = [p, t1, t2];
+                    next.slip = turned(next.slip);
+                }
+            }
+            memory.push(next);
+            tractions.push(traction);
+        }
+        self.memory = memory;
+        self.matched.clear();
+        if self.law.friction.is_some() {
+            let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
+                face: point.face,
+                s: point.s,
+                on: met.on,
+                shares: point.shares.clone(),
+            };
+            self.matched.extend(found.measured.points().map(of));
+        }
+        let displacements = [&self.slave, &self.master].map(|part| at.side(part).1.configuration.clone());
+        if let Some(small) = &mut self.small {
+            small.forget();
+            small.since = displacements;
+        }
+        let turned = found.sides.turn();
+        self.turned = turned;
+        self.law.accept(tractions);
+        Ok(())
     }
 
+    fn augment(
+        &mut self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        found: &[SiteResult],
+        around: OuterIteration,
+    ) -> Result<f64, PlaceError> {
+        let tractions = match self.law.takes_over() {
+            true => self.found(at, own.multipliers)?.projected.iter().map(|p| p.traction).collect(),
+            false => Vec::new(),
+        };
+        Ok(self.law.augment(found, &around, &tractions))
+    }
+
+    fn history(&self) -> [Vec<f64>; 2] {
+        self.numbers()
+    }
+
+    fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
+        self.take_numbers(history).ok_or_else(|| NotItsHistory { contact: self.name.clone() })
+    }
+}
+
+impl Iterated for Mortar {
+    fn begin(&mut self, _: f64) {
+        self.small.iter_mut().for_each(SmallSliding::forget);
+    }
+
+    fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
+        self.small.iter_mut().for_each(SmallSliding::forget);
+        let Ok(sides) = Sides::new(self, at) else { return };
+        for (k, (face, s)) in self.places.iter().enumerate() {
+            let placed = sides.slave.placed(*face, s);
+            let normal = sides.slave.normal(*face, s).normalize();
+            let pushed = |v: &Vector<3>| v.dot(&normal).abs() > 1e-6 * v.norm();
+            let moves = |f: &crate::points::Function| !held[(sides.first[0] + f.unknown) as usize];
+            self.merged[k] = !placed.functions.iter().any(|f| pushed(&f.value) && moves(f));
+        }
+        self.whole = self.nodes.whole(sides.slave.as_ref(), &self.search.facing, &self.merged).weight;
+        self.law.areas = super::weights(&self.whole);
+    }
+
+    /// A body that only contact holds is pressed on it first where the gap is least.
+    fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Option<Vec<f64>> {
+        let mut out = self.law.multipliers();
+        let found = self.found(at, &out).ok()?;
+        let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
+        let near = NEAREST * at.bodies[self.slave.body].size();
+        let force = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+        for (k, m) in self.seen(&found).filter(|(_, m)| m.gap <= least + near) {
+            out[k * self.law.slots().len()] = 2.0 * self.law.stiffness[k] * m.gap.max(0.0) + force / m.weight;
+        }
+        Some(out)
+    }
+
+    fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
+        let found = self.found(at, &self.law.multipliers()).ok()?;
+        self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
+    }
+
+    fn ill_conditioning(&self, _: Bodies<'_>) -> Option<String> {
+        let told = || format!("no part of the slave of contact `{}` faces the master", self.name);
+        self.search.facing.is_away.then(told)
+    }
+}
+
+impl Passing for Mortar {
     /// Solids see each other only where they face each other: what a step takes through a rigid body is followed.
     fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
         if !path.from.bodies[self.master.body].is_rigid()
@@ -301,106 +350,15 @@ impl Interaction for Mortar {
     fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {
         at.inside([&self.slave, &self.master], &self.placed(at)?, is_start)
     }
+}
 
-    fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
+impl Drawn for Mortar {
+    fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
         let found = self.found(at, own.multipliers)?;
-        let mut memory = Vec::with_capacity(self.memory.len());
-        for (k, (measure, projected)) in found.measures.iter().zip(&found.projected).enumerate() {
-            let (face, s) = &self.places[k];
-            let normal = match measure.normal.try_normalize(0.0) {
-                Some(normal) => normal,
-                None => -found.sides.slave.normal(*face, s).normalize(),
-            };
-            let mut next = NodeMemory {
-                traction: projected.traction,
-                along: self.along(&found, &normal),
-                ..NodeMemory::default()
-            };
-            if self.friction.is_some() && projected.status != Status::Open {
-                let before = self.memory[k].slip;
-                next.slip = std::array::from_fn(|i| before[i] + measure.slip[i]);
-                // Friction goes on along the new axes.
-                if let Some(old) = self.axes(k as u32, &normal) {
-                    self.memory[k].along = next.along;
-                    let new = self.axes(k as u32, &normal).unwrap_or(old);
-                    let turned = |v: [f64; 2]| new.e.map(|e| e.dot(&(old.e[0] * v[0] + old.e[1] * v[1])));
-                    let [_, t1, t2] = next.traction;
-                    let [t1, t2] = turned([t1, t2]);
-                    next.traction = [next.traction[0], t1, t2];
-                    next.slip = turned(next.slip);
-                }
-            }
-            memory.push(next);
-        }
-        self.memory = memory;
-        self.matched.clear();
-        if self.friction.is_some() {
-            let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
-                face: point.face,
-                s: point.s,
-                on: met.on,
-                shares: point.shares.clone(),
-            };
-            self.matched.extend(found.measured.points().map(of));
-        }
-        let displacements = [&self.slave, &self.master].map(|part| at.side(part).1.configuration.clone());
-        if let Some(small) = &mut self.small {
-            small.forget();
-            small.since = displacements;
-        }
-        let turned = found.sides.turn();
-        self.turned = turned;
-        self.times[0] = self.times[1];
-        Ok(())
-    }
-
-    fn unload(&mut self) {
-        self.memory.iter_mut().for_each(|m| m.traction = [0.0; 3]);
-    }
-
-    fn augment(
-        &mut self,
-        at: Bodies<'_>,
-        own: InteractionUnknowns<'_>,
-        found: &[SiteResult],
-        around: OuterIteration,
-    ) -> Result<f64, PlaceError> {
-        match self.enforcement.outer() {
-            Outer::TakesOver => {
-                let projected = self.found(at, own.multipliers)?.projected;
-                let found: Vec<[f64; 3]> = projected.iter().map(|p| p.traction).collect();
-                let kept = self.memory.iter_mut().map(|m| &mut m.traction).zip(&self.stiffness);
-                let change = take_over(kept, &found, (&around, self.softness));
-                self.softness = hardened(self.softness, change, &around);
-                Ok(change)
-            }
-            Outer::Towards(wanted) => Ok(towards(wanted, found, &mut self.stiffness)),
-            Outer::Nothing => Ok(0.0),
-        }
-    }
-
-    fn scale_trials(&mut self, factor: f64) -> bool {
-        self.stiffness.iter_mut().for_each(|c| *c *= factor);
-        self.softness *= factor;
-        true
-    }
-
-    fn simplify(&mut self, friction: SimplerFriction) {
-        let kept = (&mut self.enforcement, &mut self.softness);
-        self.set_aside = Some(SetAside::new(friction, &mut self.friction, kept));
-    }
-
-    fn restore_law(&mut self) {
-        if let Some(stated) = self.set_aside.take() {
-            stated.put_back(&mut self.friction, (&mut self.enforcement, &mut self.softness));
-        }
-    }
-
-    fn history(&self) -> [Vec<f64>; 2] {
-        self.numbers()
-    }
-
-    fn restore(&mut self, history: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        self.take_numbers(history).ok_or_else(|| NotItsHistory { contact: self.name.clone() })
+        let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
+        let points = found.measured.as_ref();
+        let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
+        let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
+        Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
     }
 }

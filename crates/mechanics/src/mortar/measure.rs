@@ -110,7 +110,7 @@ impl<'a> Sides<'a> {
             None => Opposite::Rigid(master.master(group, other)?),
         };
         let first = [at.first[contact.slave.body], at.first[contact.master.body]];
-        let friction = contact.friction.is_some();
+        let friction = contact.law.friction.is_some();
         Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction })
     }
 
@@ -212,7 +212,7 @@ impl Mortar {
 
     /// Those along which friction is unknown, with their places in the traction of a node.
     pub(super) fn axes_of(&self, node: u32, normal: &Vector<3>) -> Vec<(usize, Vector<3>)> {
-        let slots = &self.slots()[1..];
+        let slots = &self.law.slots()[1..];
         let axes = if slots.is_empty() { None } else { self.axes(node, normal) };
         axes.map_or(Vec::new(), |axes| slots.iter().map(|slot| (*slot, axes.e[slot - 1])).collect())
     }

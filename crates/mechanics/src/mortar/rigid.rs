@@ -123,7 +123,7 @@ pub(super) fn slips(carried: &NodeTractions<'_>, list: &[(&Matched, &Pair)], is_
         let place = over.places(pair);
         for (node, share) in matched.shares.iter().filter(|(node, _)| carried.acts[*node as usize]) {
             let Some(axes) = contact.axes(*node, &pair.normal) else { continue };
-            for &slot in &contact.slots()[1..] {
+            for &slot in &contact.law.slots()[1..] {
                 let row = rows.entry((*node, slot)).or_insert_with(|| vec![0.0; over.unknowns.len()]);
                 let by_normal = axes.by_normal[slot - 1].transpose() * pair.elastic;
                 for (a, at) in place.iter().enumerate() {

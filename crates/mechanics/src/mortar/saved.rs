@@ -13,11 +13,10 @@ const HEAD: usize = 9;
 impl Mortar {
     /// What nodes and matched points remember; scales and the time.
     pub(super) fn numbers(&self) -> [Vec<f64>; 2] {
-        let of_node = |m: &NodeMemory| {
-            let [p, t1, t2] = m.traction;
-            [p, t1, t2, m.slip[0], m.slip[1], m.along.x, m.along.y, m.along.z]
+        let of_node = |([p, t1, t2], m): (&[f64; 3], &NodeMemory)| {
+            [*p, *t1, *t2, m.slip[0], m.slip[1], m.along.x, m.along.y, m.along.z]
         };
-        let mut own: Vec<f64> = self.memory.iter().flat_map(of_node).collect();
+        let mut own: Vec<f64> = self.law.kept.iter().zip(&self.memory).flat_map(of_node).collect();
         for m in &self.matched {
             own.push(m.face as f64);
             own.extend(m.s);
@@ -29,7 +28,7 @@ impl Mortar {
         let since = self.small.iter().flat_map(|small| &small.since);
         let since: Vec<f64> = since.flat_map(|u| std::iter::once(u.len() as f64).chain(u.iter().copied())).collect();
         let scales =
-            self.stiffness.iter().chain(&[self.times[0]]).chain(self.turned.iter()).chain(&since).copied().collect();
+            self.law.stiffness.iter().chain(&[self.law.times[0]]).chain(self.turned.iter()).chain(&since).copied().collect();
         [own, scales]
     }
 
@@ -52,16 +51,14 @@ impl Mortar {
             });
             rest = tail;
         }
-        self.memory = (nodes.chunks(NUMBERS))
-            .map(|n| NodeMemory {
-                traction: [n[0], n[1], n[2]],
-                slip: [n[3], n[4]],
-                along: Vector::<3>::new(n[5], n[6], n[7]),
-            })
-            .collect();
+        let of = |n: &[f64]| {
+            let memory = NodeMemory { slip: [n[3], n[4]], along: Vector::<3>::new(n[5], n[6], n[7]) };
+            ([n[0], n[1], n[2]], memory)
+        };
+        (self.law.kept, self.memory) = nodes.chunks(NUMBERS).map(of).unzip();
         self.matched = matched;
-        self.stiffness.copy_from_slice(&scales[..count]);
-        self.times = [scales[count]; 2];
+        self.law.stiffness.copy_from_slice(&scales[..count]);
+        self.law.times = [scales[count]; 2];
         self.turned = Vector::<3>::from_column_slice(&scales[count + 1..count + 4]);
         if let Some(small) = &mut self.small {
             let (length, rest) = scales[count + 4..].split_first()?;

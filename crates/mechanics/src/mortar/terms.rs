@@ -8,10 +8,6 @@ use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};
 use signorini_solve::general::Entries;
 
-/// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
-/// nodes carry together need not be unique.
-const UNDETERMINED: f64 = 1e-6;
-
 /// A row or column over the unknowns of bodies, by unknown, of a component of the traction of a node.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
@@ -73,7 +69,7 @@ impl NodeTractions<'_> {
         for (node, share) in shares {
             let lambda = self.tractions[*node as usize];
             out.pressure += share * lambda[0];
-            if self.contact.friction.is_none() || lambda[1..] == [0.0; 2] {
+            if self.contact.law.friction.is_none() || lambda[1..] == [0.0; 2] {
                 continue;
             }
             let Some(axes) = self.contact.axes(*node, normal) else { continue };
@@ -98,7 +94,7 @@ pub(super) struct Assembly<'a> {
 impl<'a> Assembly<'a> {
     /// Number of a multiplier among all unknowns.
     fn row(&self, node: u32, component: usize) -> u32 {
-        self.own.first + node * self.contact.components() as u32 + component as u32
+        self.own.first + node * self.contact.law.slots().len() as u32 + component as u32
     }
 
     fn is_open(&self, node: u32) -> bool {
@@ -107,7 +103,7 @@ impl<'a> Assembly<'a> {
 
     /// The unknown traction of a node.
     fn traction(&self, node: u32) -> [f64; 3] {
-        self.contact.multiplier(node as usize, self.own.multipliers)
+        self.contact.law.multiplier(node as usize, self.own.multipliers)
     }
 
     fn acts(&self, node: u32) -> bool {
@@ -123,27 +119,9 @@ impl<'a> Assembly<'a> {
 
     /// The equations of the nodes, without what other unknowns change in them.
     pub fn add_nodes(&self, out: &mut Assembler<'_>) {
-        let contact = self.contact;
         for (node, projected) in (0u32..).zip(self.projected) {
-            let k = node as usize;
-            let lambda = self.traction(node);
-            let scale = contact.weights[k] / contact.stiffness[k];
-            let parts = contact.slots();
-            for (i, &slot) in parts.iter().enumerate() {
-                let row = self.row(node, i);
-                let traction = projected.traction[slot];
-                out.residual[row as usize] += scale * (traction - lambda[slot]);
-                out.sizes[row as usize] += scale * (traction.abs() + lambda[slot].abs());
-                let Some(tangent) = &mut out.tangent else { continue };
-                for (j, &other) in parts.iter().enumerate() {
-                    // Tractions that nothing determines stay where they are.
-                    let own = if i == j { 1.0 + UNDETERMINED } else { 0.0 };
-                    let follows = (1.0 - contact.softness) * projected.derivative[slot][other];
-                    if follows != own {
-                        tangent.add(row, self.row(node, j), scale * (follows - own));
-                    }
-                }
-            }
+            let row = self.row(node, 0);
+            self.contact.law.add_equations(node as usize, row, self.traction(node), projected, out);
         }
     }
 
@@ -175,7 +153,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_lines(&self, terms: &FaceTerms, tangent: &mut Entries) {
-        let component = |slot: usize| self.contact.slots().iter().position(|s| *s == slot);
+        let component = |slot: usize| self.contact.law.slots().iter().position(|s| *s == slot);
         for line in terms.pushes.iter().filter(|line| self.acts(line.node)) {
             let Some(i) = component(line.slot) else { continue };
             let column = self.row(line.node, i);
@@ -186,8 +164,8 @@ impl<'a> Assembly<'a> {
         let slips = terms.slips.iter().map(|line| (line, 1.0 / self.measures[line.node as usize].matched));
         for (line, mean) in gaps.chain(slips).filter(|(line, _)| !self.is_open(line.node)) {
             let k = line.node as usize;
-            for (i, &slot) in self.contact.slots().iter().enumerate() {
-                let factor = self.contact.weights[k] * mean * self.projected[k].derivative[slot][line.slot];
+            for (i, &slot) in self.contact.law.slots().iter().enumerate() {
+                let factor = self.contact.law.areas[k] * mean * self.projected[k].derivative[slot][line.slot];
                 if factor != 0.0 {
                     let row = self.row(line.node, i);
                     line.entries.iter().for_each(|(unknown, value)| tangent.add(row, *unknown, factor * value));

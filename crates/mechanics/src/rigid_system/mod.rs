@@ -25,13 +25,15 @@ use crate::increment_error::IncrementError;
 use crate::system::{System, SystemState};
 use increment::Increment;
 use motion::Motion;
+use signorini_contact::Law;
 
 impl System {
     /// Whether all that moves is rigid and touches in points, with friction that knows no time.
     pub fn is_rigid(&self) -> bool {
         let suits = |c: &Contact| {
-            let in_time = c.friction.as_ref().is_some_and(|law| law.is_rate_dependent());
-            c.enforcement == Enforcement::AugmentedLagrangian && !in_time && self.bodies[c.master.body].is_rigid()
+            let by_state = |law: &Box<dyn Law>| law.is_rate_dependent() || law.is_compliant();
+            let by_state = c.law.friction.as_ref().is_some_and(by_state);
+            c.law.enforcement == Enforcement::AugmentedLagrangian && !by_state && self.bodies[c.master.body].is_rigid()
         };
         self.bodies.iter().all(|b| b.is_rigid())
             && self.bodies.iter().any(|b| b.unknowns() > 0)
@@ -54,13 +56,13 @@ impl System {
             .contacts
             .iter()
             .zip(&memory)
-            .flat_map(|(c, own)| c.as_points().map(|c| c.values(own)))
+            .flat_map(|(c, own)| c.as_points().map(|c| c.values(&own.0)))
             .flatten()
             .collect();
         state.reactions = found.reactions;
         for (contact, own) in self.contacts.iter_mut().zip(memory) {
             if let Some(contact) = contact.as_points_mut() {
-                contact.memory = own;
+                (contact.law.kept, contact.memory) = own;
             }
         }
         Ok((state, result))

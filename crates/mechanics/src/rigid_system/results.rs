@@ -187,17 +187,18 @@ impl<'a> Motion<'a> {
         out
     }
 
-    /// What the sites of each contact remember.
-    pub fn memory(&self, found: &Stepped<'_>, so_far: &SoFar) -> Vec<Vec<SiteMemory>> {
-        let mut out: Vec<Vec<SiteMemory>> =
-            self.contacts.iter().map(|c| vec![SiteMemory::default(); c.sites().len()]).collect();
+    /// The tractions of the sites of each contact, and what they remember besides.
+    pub fn memory(&self, found: &Stepped<'_>, so_far: &SoFar) -> Vec<(Vec<[f64; 3]>, Vec<SiteMemory>)> {
+        let none = |c: &&Contact| (vec![[0.0; 3]; c.sites().len()], vec![SiteMemory::default(); c.sites().len()]);
+        let mut out: Vec<_> = self.contacts.iter().map(none).collect();
         for l in found.loaded.iter().filter(|l| l.force[0] > 0.0) {
             let id = l.point.id;
-            let own = &mut out[id.contact][id.site];
-            own.traction[0] += l.force[0] / l.point.weight;
+            let (tractions, memory) = &mut out[id.contact];
+            let (traction, own) = (&mut tractions[id.site], &mut memory[id.site]);
+            traction[0] += l.force[0] / l.point.weight;
             if id.place == 0 {
                 let [a, b] = l.tractions();
-                own.traction = [own.traction[0], a, b];
+                *traction = [traction[0], a, b];
                 own.stuck = l.point.pair.stuck;
             }
             let slipped = so_far.slipped.get(&(id.contact, id.site)).map_or(0.0, |s| s.path);
@@ -234,8 +235,8 @@ fn slipped_before(contact: &Contact, site: usize) -> f64 {
 }
 
 impl Contact {
-    /// The values of its own unknowns that are remembered so.
-    pub(super) fn values(&self, memory: &[SiteMemory]) -> Vec<f64> {
-        memory.iter().flat_map(|m| m.traction[..self.components()].to_vec()).collect()
+    /// The values of its own unknowns with these tractions.
+    pub(super) fn values(&self, tractions: &[[f64; 3]]) -> Vec<f64> {
+        tractions.iter().flat_map(|traction| traction[..self.components()].to_vec()).collect()
     }
 }

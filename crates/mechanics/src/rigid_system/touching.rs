@@ -114,7 +114,7 @@ pub fn touching<'a>(
     for (number, contact) in contacts.iter().enumerate() {
         let sides = at.sides(contact);
         let Ok(master) = sides.master.0.master(contact.master.group.as_deref(), sides.master.1) else { continue };
-        let friction = contact.friction.is_some();
+        let friction = contact.law.friction.is_some();
         for (k, site) in contact.sites().iter().enumerate() {
             let placed = sides.slave.0.placed(sides.slave.1, site);
             for (place, met) in master.places(&placed.x).into_iter().enumerate() {
@@ -145,7 +145,7 @@ pub fn touching<'a>(
                 let axes = if friction { axes(&pair).0 } else { [Vector::<3>::zeros(); 2] };
                 let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
                 let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
-                let law = contact.friction.as_deref();
+                let law = contact.law.friction.as_deref();
                 let weight = site.weight;
                 out.push(Touching { id, law, weight, centre: placed.x, x, pair, axes, moves, driven });
             }

@@ -21,7 +21,7 @@ fn part(body: usize) -> Part {
 fn touching(system: &System, slave: usize, master: usize, enforcement: Enforcement, mu: Option<f64>) -> Contact {
     let of = |k: usize| (part(k), system.bodies[k].as_ref());
     let mut contact = Contact::new("touch", of(slave), of(master), Sampling::Nodes, enforcement).unwrap();
-    contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+    contact.law.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
     contact.reach = 3.0;
     contact
 }
@@ -249,7 +249,7 @@ fn viscous_friction_creeps_down_an_incline() {
             ..Support::default()
         });
         let mut contact = touching(&system, 0, 1, enforcement, None);
-        contact.friction = Some(Box::new(Viscous::new(mu, v0).unwrap()));
+        contact.law.friction = Some(Box::new(Viscous::new(mu, v0).unwrap()));
         system.contacts.push(Box::new(contact));
         system.prepare().unwrap();
         let mut state = system.start();

@@ -49,7 +49,7 @@ fn check(
     let part = |body| Part { body, group: None };
     let mut contact =
         Contact::new("pair", (part(0), &slave), (part(1), &master), Sampling::Nodes, enforcement).unwrap();
-    contact.friction = law;
+    contact.law.friction = law;
     contact.axis = axis;
     let mut system = System {
         bodies: vec![Box::new(slave), Box::new(master)],
@@ -74,7 +74,7 @@ fn check(
     }
     system.contacts[0].restore(&history).unwrap();
     let mut state = random(&state, moved, seed, &system);
-    let parts = if system.contacts[0].law().is_some() { 3 } else { 1 };
+    let parts = if system.contacts[0].friction().is_some() { 3 } else { 1 };
     for own in state.multipliers.chunks_mut(parts) {
         own[0] = 0.9 + 0.05 * noise(seed);
         own[1..].iter_mut().for_each(|t| *t *= 0.1);

@@ -18,11 +18,10 @@ use super::measure::{CurvePair, NoPair, Wanted, elastic_slip, measure, parallel}
 use super::search::{CurvePoint, SearchScope, Searched, crossings};
 use super::side::{Side, side};
 use crate::hermite::gauss;
-use signorini_contact::Law;
 use signorini_geometry::bvh::Bvh;
 use signorini_mechanics::body::{Body, Foot, Order};
 use signorini_mechanics::curve::{Closure, Curve, are_apart, boxes, minima};
-use signorini_mechanics::{Enforcement, Part};
+use signorini_mechanics::{ContactLaw, Enforcement, Part};
 
 /// Which forces act.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +37,7 @@ pub enum Form {
 /// Whether ends make contacts of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    CurveContactPoint,
+    Touch,
     PassBy,
 }
 
@@ -65,19 +64,14 @@ pub struct CurveContact {
     pub parts: [Part; 2],
     pub form: Form,
     pub ends: Ends,
-    pub enforcement: Enforcement,
-    /// Along the slave and around it; without it curves slide freely.
-    pub friction: Option<Box<dyn Law>>,
+    /// With friction along the slave and around it.
+    pub law: ContactLaw,
     /// Penalties that are stated; otherwise they come from the stiffness of the bodies.
     pub stated: Option<Penalties>,
     /// How far apart surfaces are looked at, and how far inside each other curves may be in an iterate and still be parted.
     pub reach: f64,
     pub(super) penalties: Penalties,
     pub(super) history: Vec<ContactHistory>,
-    /// Times of the last state and of the one that is looked for.
-    pub(super) times: [f64; 2],
-    /// The law while a start is looked for with one that sticks.
-    pub(super) set_aside: Option<Box<dyn Law>>,
 }
 
 /// A contact as it is now.
@@ -163,15 +157,12 @@ impl CurveContact {
             } else {
                 Form::Blend(Blend::resolved(spacing(curves[0], enforcement), radii))
             },
-            ends: if is_sharp { Ends::PassBy } else { Ends::CurveContactPoint },
-            enforcement,
-            friction: None,
+            ends: if is_sharp { Ends::PassBy } else { Ends::Touch },
+            law: ContactLaw::new(enforcement, Vec::new(), Vec::new()),
             stated: None,
             reach: radii[0] + radii[1] + element(curves[0]).max(element(curves[1])),
             penalties: Penalties { point: 1.0, line: 1.0 },
             history: Vec::new(),
-            times: [0.0; 2],
-            set_aside: None,
         })
     }
 
@@ -188,7 +179,7 @@ impl CurveContact {
         };
         // One after the other.
         let point = 1.0 / (1.0 / mean(0) + 1.0 / mean(1));
-        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0], self.enforcement) });
+        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0], self.law.enforcement) });
     }
 
     /// Whether a point is an end of its curve.
@@ -205,7 +196,7 @@ impl CurveContact {
         (weight, penalty, share): (f64, f64, (f64, f64)),
         (kept, predicted): (Option<ContactHistory>, Option<&Predicted>),
     ) -> CurveContactPoint {
-        let multiplier = match self.enforcement {
+        let multiplier = match self.law.enforcement {
             Enforcement::Penalty { .. } => 0.0,
             _ => kept.map_or(0.0, |k| k.force),
         };
@@ -222,7 +213,7 @@ impl CurveContact {
         order: Order,
         prediction: &[Predicted],
     ) -> Touches {
-        let rubs = self.friction.is_some();
+        let rubs = self.law.friction.is_some();
         let mut out = Vec::new();
         let mut lost = 0;
         let mut add =
@@ -253,7 +244,7 @@ impl CurveContact {
         let foot = |s: usize, p: &CurvePoint, coordinates: usize| {
             sides[s].curve.foot(sides[s].configuration, p.element, p.xi, coordinates)
         };
-        if self.form != Form::Line || self.ends == Ends::CurveContactPoint {
+        if self.form != Form::Line || self.ends == Ends::Touch {
             for near in crossings(sides[0], sides[1], self.between(), self.reach) {
                 let is_crossing = (0..2).all(|s| !Self::is_end(sides[s].curve, &near.points[s]));
                 if if is_crossing { self.form == Form::Line } else { self.ends == Ends::PassBy } {
@@ -283,7 +274,7 @@ impl CurveContact {
         let tree = Bvh::new(&boxes);
         let reach = self.reach + slave.curve.radius() + master.curve.radius();
         let half = if self.between() == SearchScope::Itself { 0.5 } else { 1.0 };
-        let rule = gauss(points(slave.curve, self.enforcement));
+        let rule = gauss(points(slave.curve, self.law.enforcement));
         for element in 0..slave.curve.elements() {
             let length = slave.curve.arc(element, 1.0) - slave.curve.arc(element, 0.0);
             for (number, (xi, share)) in rule.iter().enumerate() {
@@ -337,7 +328,7 @@ impl CurveContact {
         first: [u32; 2],
         order: Order,
     ) -> Option<Tangential> {
-        let law = self.friction.as_deref()?;
+        let law = self.law.friction.as_deref()?;
         let kept = touch.kept?;
         let stuck = kept.stuck?;
         let linearised = match (order, touch.predicted) {
@@ -351,11 +342,11 @@ impl CurveContact {
         });
         let slip = elastic_slip(&stuck, [&feet[0], &feet[1]], first);
         let d_pressing: Vec<f64> = touch.pair.d_gap.iter().map(|d| -touch.penalty * d).collect();
-        let multiplier = match self.enforcement {
+        let multiplier = match self.law.enforcement {
             Enforcement::Penalty { .. } => [0.0; 2],
             _ => kept.traction,
         };
-        let duration = self.times[1] - self.times[0];
+        let duration = self.law.duration();
         let friction = CurveFriction { law, multiplier, penalty: touch.penalty, duration };
         Some(tangential(&touch.pair, &slip, (-touch.acting(order), &d_pressing), friction, linearised, order))
     }

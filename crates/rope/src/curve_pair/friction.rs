@@ -8,7 +8,7 @@
 
 use super::measure::{CurvePair, Stuck};
 use nalgebra::SMatrix;
-use signorini_contact::law::{Law, Status};
+use signorini_contact::law::{Law, LawPoint, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Foot, Order};
 
@@ -72,7 +72,7 @@ pub fn tangential(
         Linearised::About(about) => about,
         _ => now,
     };
-    let projected = friction.law.project_in_time(about, friction.penalty * friction.duration);
+    let projected = friction.law.traction(about, &LawPoint { per_gap: friction.penalty, duration: friction.duration });
     let d = &projected.derivative;
     let predicted = [projected.traction[1], projected.traction[2]];
     let components: [f64; 2] =

@@ -8,10 +8,11 @@ use signorini_contact::{Law, Status};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, Order, PlaceError};
 use signorini_mechanics::interaction::{
-    Assembler, Bodies, Interaction, InteractionUnknowns, NotItsHistory, OuterIteration, penalty_factor,
+    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing,
+    penalty_factor,
 };
 use signorini_mechanics::passage::StatePath;
-use signorini_mechanics::{Curve, Enforcement, Part, SimplerFriction, SiteResult};
+use signorini_mechanics::{ContactLaw, Curve, Enforcement, Part, SiteResult};
 
 /// Of the second derivative of the squared distance, relative to that between straight lines, what is hardly any: nearest points
 /// move fifty times as far as curves.
@@ -33,7 +34,7 @@ impl CurveContact {
         let curves = [self.curve(at, 0)?, self.curve(at, 1)?];
         let configuration = |k: usize| &at.states[self.parts[k].body].configuration[..];
         let sides = [0, 1].map(|k| Searched { curve: curves[k].as_ref(), configuration: configuration(k) });
-        Ok(act(sides, self.bodies().map(|b| at.first[b])))
+        Ok(act(sides, self.parts.each_ref().map(|part| part.body).map(|b| at.first[b])))
     }
 
     /// What is kept of a contact: with the traction as a multiplier, or so that the slip is that of the traction.
@@ -51,7 +52,7 @@ impl CurveContact {
         let slipped = before.map_or([0.0; 2], |k| k.slip);
         kept.slip = [0, 1].map(|a| slipped[a] + rubs.slipped[a]);
         kept.traction = rubs.components;
-        if let Enforcement::Penalty { .. } = self.enforcement {
+        if let Enforcement::Penalty { .. } = self.law.enforcement {
             // What is viscous creeps below the limit too.
             kept.stuck = match rubs.slipped {
                 [0.0, 0.0] => before.and_then(|k| k.stuck),
@@ -129,16 +130,12 @@ impl Interaction for CurveContact {
         self.parts.each_ref()
     }
 
-    fn law(&self) -> Option<&dyn Law> {
-        self.friction.as_deref()
+    fn law(&self) -> &ContactLaw {
+        &self.law
     }
 
-    fn friction_mut(&mut self) -> Option<&mut Option<Box<dyn Law>>> {
-        Some(&mut self.friction)
-    }
-
-    fn begin(&mut self, time: f64) {
-        self.times[1] = time;
+    fn law_mut(&mut self) -> &mut ContactLaw {
+        &mut self.law
     }
 
     fn stiffness(&self, bodies: &[Box<dyn Body>]) -> f64 {
@@ -181,42 +178,11 @@ impl Interaction for CurveContact {
                 let CurvePoint { element, xi, .. } = c.points[0];
                 let x = sides[0].curve.jet(sides[0].configuration, element, xi).x;
                 let rubs = self.tangential(c, sides, first, Order::First);
-                let found = site_result(c, x, rubs.as_ref(), self.law());
+                let found = site_result(c, x, rubs.as_ref(), self.law.friction.as_deref());
                 SiteResult { radius: sides[0].curve.radius(), ..found }
             };
             touches.iter().map(result).collect()
         })
-    }
-
-    fn prediction(&self) -> Vec<f64> {
-        let closed = self.history.iter().filter(|k| k.force < 0.0);
-        closed.flat_map(|k| Predicted { key: k.key, force: k.force, trial: k.traction }.numbers()).collect()
-    }
-
-    fn predict(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>, step: &[f64], share: f64) -> Vec<f64> {
-        let predicted = |c: &CurveContactPoint, rubs: Option<Tangential>| {
-            // A new contact has no force that could turn.
-            if c.force == 0.0 && c.predicted.is_none() {
-                return None;
-            }
-            let change = |unknowns: &[u32], by: &dyn Fn(usize) -> f64| -> f64 {
-                unknowns.iter().enumerate().map(|(k, u)| share * step[*u as usize] * by(k)).sum()
-            };
-            let force = c.trial + c.penalty * change(&c.pair.unknowns, &|k| c.pair.d_gap[k]);
-            let trial =
-                rubs.map_or([0.0; 2], |r| [0, 1].map(|a| r.trial[a] + change(&r.unknowns, &|k| r.d_trial[k][a])));
-            (force < 0.0).then_some(Predicted { key: c.key, force, trial })
-        };
-        let found = self.with(at, |sides, first| {
-            let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
-            let one = |c: &CurveContactPoint| predicted(c, self.rubbing(c, sides, first, Order::First));
-            touches.iter().filter_map(one).flat_map(|p| p.numbers()).collect()
-        });
-        found.unwrap_or_default()
-    }
-
-    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
-        self.with(path.from, |from, _| self.with(path.to, |to, _| self.share_of_way(from, to)))?
     }
 
     fn accept(&mut self, at: Bodies<'_>, _: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
@@ -226,42 +192,8 @@ impl Interaction for CurveContact {
                 |c: &CurveContactPoint| self.kept(c, self.tangential(c, sides, first, Order::First).as_ref(), sides);
             touches.iter().map(kept).collect()
         })?;
-        self.times[0] = self.times[1];
+        self.law.accept(Vec::new());
         Ok(())
-    }
-
-    /// Where a curve bends towards the other as sharply as they are apart, its nearest point is about to part in two.
-    fn ill_conditioning(&self, at: Bodies<'_>) -> Option<String> {
-        let name = |side: usize| at.bodies[self.parts[side].body].name();
-        let worst = self.with(at, |sides, first| {
-            let (touches, _) = self.touches(sides, first, Order::First, &[]);
-            let bend = |c: &CurveContactPoint| {
-                let jets =
-                    [0, 1].map(|s| sides[s].curve.jet(sides[s].configuration, c.points[s].element, c.points[s].xi));
-                let d = jets[0].x - jets[1].x;
-                [(0, d), (1, -d)]
-                    .map(|(s, d)| (1.0 + d.dot(&jets[s].d2) / jets[s].d1.norm_squared(), s, jets[s].x, d.norm()))
-            };
-            let closed = touches.iter().filter(|c| c.force < 0.0);
-            closed.flat_map(bend).min_by(|p, q| p.0.total_cmp(&q.0))
-        });
-        let (left, side, x, apart) = worst.ok()?.filter(|w| w.0 < FOCAL)?;
-        Some(format!(
-            "contact `{}`: at ({:.4}, {:.4}, {:.4}) the curvature of `{}` towards `{}` has a radius of {:.3} times \
-             the distance of their axes, {apart:.4}; below 1 the closest point is not defined; use thinner sections, \
-             or stiffer ones",
-            self.name,
-            x[0],
-            x[1],
-            x[2],
-            name(side),
-            name(1 - side),
-            1.0 / (1.0 - left)
-        ))
-    }
-
-    fn unload(&mut self) {
-        self.history.iter_mut().for_each(|k| (k.force, k.traction) = (0.0, [0.0; 2]));
     }
 
     fn augment(
@@ -271,7 +203,7 @@ impl Interaction for CurveContact {
         found: &[SiteResult],
         around: OuterIteration,
     ) -> Result<f64, PlaceError> {
-        match self.enforcement {
+        match self.law.enforcement {
             Enforcement::Penalty { wanted_penetration: Some(wanted) } => Ok(match penalty_factor(found, wanted) {
                 Some(factor) => {
                     self.penalties.point *= factor;
@@ -316,20 +248,10 @@ impl Interaction for CurveContact {
         }
     }
 
-    fn simplify(&mut self, friction: SimplerFriction) {
-        self.set_aside = friction.instead_of(&mut self.friction);
-    }
-
-    fn restore_law(&mut self) {
-        if let Some(law) = self.set_aside.take() {
-            self.friction = Some(law);
-        }
-    }
-
     fn history(&self) -> [Vec<f64>; 2] {
         [
             self.history.iter().flat_map(|k| k.numbers()).collect(),
-            vec![self.penalties.point, self.penalties.line, self.times[0]],
+            vec![self.penalties.point, self.penalties.line, self.law.times[0]],
         ]
     }
 
@@ -340,7 +262,78 @@ impl Interaction for CurveContact {
         }
         self.history = ContactHistory::list(kept);
         self.penalties = super::contact::Penalties { point, line };
-        self.times = [time; 2];
+        self.law.times = [time; 2];
         Ok(())
     }
 }
+
+impl Iterated for CurveContact {
+    fn unload(&mut self) {
+        self.history.iter_mut().for_each(|k| (k.force, k.traction) = (0.0, [0.0; 2]));
+    }
+
+    /// Where a curve bends towards the other as sharply as they are apart, its nearest point is about to part in two.
+    fn ill_conditioning(&self, at: Bodies<'_>) -> Option<String> {
+        let name = |side: usize| at.bodies[self.parts[side].body].name();
+        let worst = self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &[]);
+            let bend = |c: &CurveContactPoint| {
+                let jets =
+                    [0, 1].map(|s| sides[s].curve.jet(sides[s].configuration, c.points[s].element, c.points[s].xi));
+                let d = jets[0].x - jets[1].x;
+                [(0, d), (1, -d)]
+                    .map(|(s, d)| (1.0 + d.dot(&jets[s].d2) / jets[s].d1.norm_squared(), s, jets[s].x, d.norm()))
+            };
+            let closed = touches.iter().filter(|c| c.force < 0.0);
+            closed.flat_map(bend).min_by(|p, q| p.0.total_cmp(&q.0))
+        });
+        let (left, side, x, apart) = worst.ok()?.filter(|w| w.0 < FOCAL)?;
+        Some(format!(
+            "contact `{}`: at ({:.4}, {:.4}, {:.4}) the curvature of `{}` towards `{}` has a radius of {:.3} times \
+             the distance of their axes, {apart:.4}; below 1 the closest point is not defined; use thinner sections, \
+             or stiffer ones",
+            self.name,
+            x[0],
+            x[1],
+            x[2],
+            name(side),
+            name(1 - side),
+            1.0 / (1.0 - left)
+        ))
+    }
+
+    fn prediction(&self) -> Vec<f64> {
+        let closed = self.history.iter().filter(|k| k.force < 0.0);
+        closed.flat_map(|k| Predicted { key: k.key, force: k.force, trial: k.traction }.numbers()).collect()
+    }
+
+    fn predict(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>, step: &[f64], share: f64) -> Vec<f64> {
+        let predicted = |c: &CurveContactPoint, rubs: Option<Tangential>| {
+            // A new contact has no force that could turn.
+            if c.force == 0.0 && c.predicted.is_none() {
+                return None;
+            }
+            let change = |unknowns: &[u32], by: &dyn Fn(usize) -> f64| -> f64 {
+                unknowns.iter().enumerate().map(|(k, u)| share * step[*u as usize] * by(k)).sum()
+            };
+            let force = c.trial + c.penalty * change(&c.pair.unknowns, &|k| c.pair.d_gap[k]);
+            let trial =
+                rubs.map_or([0.0; 2], |r| [0, 1].map(|a| r.trial[a] + change(&r.unknowns, &|k| r.d_trial[k][a])));
+            (force < 0.0).then_some(Predicted { key: c.key, force, trial })
+        };
+        let found = self.with(at, |sides, first| {
+            let (touches, _) = self.touches(sides, first, Order::First, &Predicted::list(own.prediction));
+            let one = |c: &CurveContactPoint| predicted(c, self.rubbing(c, sides, first, Order::First));
+            touches.iter().filter_map(one).flat_map(|p| p.numbers()).collect()
+        });
+        found.unwrap_or_default()
+    }
+}
+
+impl Passing for CurveContact {
+    fn free_way(&self, path: StatePath<'_>) -> Result<f64, PlaceError> {
+        self.with(path.from, |from, _| self.with(path.to, |to, _| self.share_of_way(from, to)))?
+    }
+}
+
+impl Drawn for CurveContact {}

@@ -222,7 +222,7 @@ fn parallel_curves_never_fail() {
         let sides = [0, 1].map(|s| searched(curves[s].as_ref(), &states[s]));
         let penalty = Enforcement::Penalty { wanted_penetration: None };
         let mut contact = CurveContact::new("touch", (0, &bodies[0]), (1, &bodies[1]), penalty).unwrap();
-        contact.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
         for form in [contact.form, Form::Point, Form::Line, Form::Blend(Blend::default())] {
             contact.form = form;
             let (found, lost) = contact.touches(sides, [first[0], first[1]], Order::Second, &[]);
@@ -331,7 +331,7 @@ fn forces_with_friction_have_neither_resultant_nor_moment() {
 fn slip_is_limited_and_what_touched_follows() {
     // A step along the slave and one back: friction turns round, and what has slipped adds up.
     let (bodies, mut contact) = touching(Case::Crossing, false);
-    contact.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
+    contact.law.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
     let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
     let first = first_unknowns(&all);
     let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();

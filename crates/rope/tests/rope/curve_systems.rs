@@ -45,7 +45,7 @@ impl Crossing {
         let all: Vec<Box<dyn Body>> =
             vec![Box::new(upper.with_contact_points(self.points)), Box::new(lower.with_contact_points(self.points))];
         let mut system = system(all, |contact| {
-            contact.enforcement = self.enforcement;
+            contact.law.enforcement = self.enforcement;
             contact.stated = self.stated;
             contact.form = self.form.unwrap_or(contact.form);
         });
@@ -118,7 +118,7 @@ fn viscous_friction_between_rods_follows_the_velocity() {
         ];
         let sides = [(0, all[0].as_ref()), (1, all[1].as_ref())];
         let mut contact = CurveContact::new("touch", sides[0], sides[1], enforcement).unwrap();
-        contact.friction = Some(Box::new(Viscous::new(mu, slow).unwrap()));
+        contact.law.friction = Some(Box::new(Viscous::new(mu, slow).unwrap()));
         let mut system = System { bodies: all, contacts: vec![Box::new(contact)], ..System::default() };
         // Down in a unit of time, then along for one, then at rest for many.
         let at = move |t: f64| V::z() * (-0.01 * t.min(1.0)) + way * (slow * (t - 1.0).clamp(0.0, 1.0));
@@ -257,8 +257,8 @@ fn ends_press_on_ends_and_on_sides() {
         let all: Vec<Box<dyn Body>> =
             vec![Box::new(beam("left", &left, 4, rod, radius)), Box::new(beam("right", &right, 4, rod, radius))];
         let mut system = system(all, |contact| {
-            contact.enforcement = Enforcement::AugmentedLagrangian;
-            contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+            contact.law.enforcement = Enforcement::AugmentedLagrangian;
+            contact.law.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
         });
         system.supports.push(clamped(0, "start"));
         if under == Under::Side {

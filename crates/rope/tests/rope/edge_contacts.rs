@@ -96,7 +96,7 @@ fn touching(met: MasterProjection, radius: f64, law: Option<Box<dyn Law>>) -> Sy
     let sides = [(part(0, "rim"), bodies[0].as_ref()), (master, bodies[1].as_ref())];
     let [own, met] = sides;
     let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, Enforcement::Multiplier).unwrap();
-    contact.friction = law;
+    contact.law.friction = law;
     contact.axis = AxisChoice::Tangent;
     let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
     system.prepare().unwrap();
@@ -118,7 +118,7 @@ fn moved(system: &System) -> (SystemState, Vec<f64>) {
     let n = system.linearise(&start, 0.0).unwrap().0.len();
     let noise = |seed: f64| -> Vec<f64> { (0..n).map(|k| (seed + 1.3 * (k * k) as f64).sin()).collect() };
     let mut at = system.advance(&start, &noise(0.3), 2e-3);
-    let parts = if system.contacts[0].law().is_some() { 3 } else { 1 };
+    let parts = if system.contacts[0].friction().is_some() { 3 } else { 1 };
     for (k, m) in at.multipliers.iter_mut().enumerate() {
         *m = if k % parts == 0 { 9.0 + (k as f64).sin() } else { (k as f64).cos() };
     }
@@ -165,7 +165,7 @@ fn tangents_of_beams_along_a_rounding() {
         let bodies: Vec<Box<dyn Body>> = vec![Box::new(own), Box::new(block)];
         let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
         let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, Enforcement::Multiplier).unwrap();
-        contact.friction = law;
+        contact.law.friction = law;
         contact.axis = AxisChoice::Tangent;
         let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
         system.prepare().unwrap();

@@ -123,7 +123,7 @@ fn a_rope_slips_over_an_edge() {
         let sides = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
         let [own, met] = sides;
         let mut contact = Contact::new("touch", own, met, Sampling::Nodes, Enforcement::Multiplier).unwrap();
-        contact.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
         contact.axis = AxisChoice::Tangent;
         let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
         let none = || [None, None, None];
@@ -202,7 +202,7 @@ fn a_smooth_rope_slips_over_a_rounding() {
         let bodies: Vec<Box<dyn Body>> = vec![Box::new(rope), Box::new(block)];
         let [own, met] = [(Part::from(0), bodies[0].as_ref()), (part(1, "rim"), bodies[1].as_ref())];
         let mut contact = Contact::new("touch", own, met, Sampling::GaussPoints, enforcement).unwrap();
-        contact.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
         contact.axis = AxisChoice::Tangent;
         let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
         let none = || [None, None, None];

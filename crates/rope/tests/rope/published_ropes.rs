@@ -122,7 +122,7 @@ fn drawn(shape: &Arc<dyn RigidShape>, (on, tau, h): (&[V], [V; 2], f64), mu: [f6
     system.loads.push(PlacedLoad { name: "start".into(), part: Part { body: 0, group: Some("start".into()) }, load });
     let of = |body: usize| (Part { body, group: None }, system.bodies[body].as_ref());
     let mut contact = Contact::new("touch", of(0), of(1), Sampling::Nodes, Enforcement::Multiplier).unwrap();
-    contact.friction = Some(Box::new(Coulomb::orthotropic(mu).unwrap()));
+    contact.law.friction = Some(Box::new(Coulomb::orthotropic(mu).unwrap()));
     contact.axis = AxisChoice::Tangent;
     system.contacts.push(Box::new(contact));
     system.prepare().unwrap();
@@ -212,7 +212,7 @@ fn slip_ends_within_a_node_of_the_closed_form() {
         system.loads.push(PlacedLoad { name: "pull".into(), part: Part { body: 0, group: Some("end".into()) }, load });
         let of = |body: usize| (Part { body, group: None }, system.bodies[body].as_ref());
         let mut contact = Contact::new("touch", of(0), of(1), Sampling::Nodes, Enforcement::Multiplier).unwrap();
-        contact.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
         system.contacts.push(Box::new(contact));
         system.prepare().unwrap();
         let mut state = system.start();

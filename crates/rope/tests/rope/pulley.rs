@@ -58,7 +58,7 @@ fn system(young: f64, mu: Option<f64>, enforcement: Enforcement) -> (System, Cha
     let [own, met] = sides;
     let mut contact = Contact::new("over", own, met, Sampling::Nodes, enforcement).unwrap();
     if let Some(mu) = mu {
-        contact.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(mu).unwrap()));
         contact.axis = AxisChoice::Tangent;
     }
     let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };

@@ -33,7 +33,7 @@ fn twist(steps: u32, enforcement: Option<Enforcement>, known: &[(u32, f64, f64, 
         contact.form = Form::Line;
         contact.ends = Ends::PassBy;
         match enforcement {
-            Some(enforcement) => contact.enforcement = enforcement,
+            Some(enforcement) => contact.law.enforcement = enforcement,
             None => contact.stated = Some(Penalties { point: 0.0, line: 2e3 }),
         }
         contact.reach = 0.02;
@@ -115,7 +115,7 @@ fn clasp(mu: Option<f64>) -> System {
     let all =
         vec![one("lower", &arch(V::x(), 1.0, 0.501, 1.5, 7.6)), one("upper", &arch(V::y(), -1.0, -0.501, 1.5, 7.6))];
     let mut system = system(all, |contact| {
-        contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+        contact.law.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
     });
     for (body, sign) in [(0, -1.0), (1, 1.0)] {
         for group in ["start", "end"] {
@@ -195,7 +195,7 @@ fn draw_tight(steps: u32, form: Option<Form>) -> (f64, usize) {
     let shape = |s: &BodyState| -> f64 { writhe(&(0..=64).map(|k| knot.position(s, k)).collect::<Vec<_>>()) };
     let all = vec![Box::new(knot.clone()) as Box<dyn Body>];
     let mut system = system(all, |contact| {
-        contact.friction = Some(Box::new(Coulomb::isotropic(0.2).unwrap()) as _);
+        contact.law.friction = Some(Box::new(Coulomb::isotropic(0.2).unwrap()) as _);
         contact.form = form.unwrap_or(contact.form);
     });
     for (group, sign) in [("start", -1.0), ("end", 1.0)] {

@@ -44,7 +44,7 @@ fn rigid(shape: impl RigidShape + 'static) -> RigidBody {
 fn touch(system: &mut System, sampling: Sampling, enforcement: Enforcement, mu: Option<f64>) {
     let of = |body: usize| (part(body, ""), system.bodies[body].as_ref());
     let mut contact = Contact::new("touch", of(0), of(1), sampling, enforcement).unwrap();
-    contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+    contact.law.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
     system.contacts.push(Box::new(contact));
 }
 

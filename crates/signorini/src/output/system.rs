@@ -78,7 +78,7 @@ impl SystemShown {
         let contacts = plan.system.contacts.iter().zip(&plan.contacts);
         for (number, ((contact, tested), sites)) in contacts.zip(&result.sites).enumerate() {
             let surface = plan.system.surface(number, state).ok().flatten();
-            let mut fields = of_contact(contact.name(), sites, contact.law().is_some(), tested.along_a_curve);
+            let mut fields = of_contact(contact.name(), sites, contact.friction().is_some(), tested.along_a_curve);
             if let Some(surface) = &surface {
                 add_faces(&mut fields, surface, plan.space == Space::ThreeD);
                 shown.zones.extend(&surface.intervals);

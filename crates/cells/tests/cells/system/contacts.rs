@@ -41,7 +41,7 @@ fn a_disc_pressed_on_a_floor() {
         let mut contact =
             Contact::new("touch", (part(0, "skin"), &body), (part(1, ""), &floor), sampling, enforcement).unwrap();
         if friction {
-            contact.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
+            contact.law.friction = Some(Box::new(Coulomb::isotropic(0.3).unwrap()));
         }
         let mut system = System {
             supports: vec![

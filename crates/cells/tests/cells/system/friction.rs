@@ -25,7 +25,7 @@ fn half(name: &str, up: f64) -> CellSolid<2> {
 fn pressed_and_shifted(how: Enforcement) -> System {
     let (upper, lower) = (half("upper", 1.0), half("lower", -1.0));
     let mut contact = contact(("skin", &upper), ("skin", &lower), Sampling::GaussPoints, how);
-    contact.friction = Some(Box::new(Coulomb::isotropic(MU).unwrap()));
+    contact.law.friction = Some(Box::new(Coulomb::isotropic(MU).unwrap()));
     let mut top = support(0, "middle", [None, None, None]);
     top.displacement[0] = Some(Arc::new(|_, t| 0.02 * (t - 1.0f64).clamp(0.0, 1.0)));
     top.displacement[1] = Some(Arc::new(|_, t| -0.06 * t.min(1.0)));

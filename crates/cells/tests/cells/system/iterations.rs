@@ -20,7 +20,7 @@ fn pressed(solver: LinearSolver, enforcement: Enforcement, mu: Option<f64>) -> (
     let mut contact =
         Contact::new("touch", (part(0, "skin"), &body), (part(1, ""), &floor), Sampling::GaussPoints, enforcement)
             .unwrap();
-    contact.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+    contact.law.friction = mu.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
     let mut system = System {
         supports: vec![
             support(0, "x", [constant(0.0), None, None]),

@@ -84,7 +84,7 @@ fn crushed(
         // Pores twice as far across close in several increments, if at all.
         contact.reach = 8.0 / n as f64;
         contact.pairing = Pairing::AtStart;
-        contact.friction =
+        contact.law.friction =
             friction.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as Box<dyn signorini_contact::Law>);
         println!("{n}: {} sites to test, {:?}, {:.2} GiB", contact.sites().len(), begin.elapsed(), memory());
         Box::new(contact) as Box<dyn Interaction>

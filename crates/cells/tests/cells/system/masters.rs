@@ -52,7 +52,7 @@ fn check(
 ) {
     for &friction in frictions {
         let (bodies, mut contact) = make();
-        contact.friction =
+        contact.law.friction =
             friction.map(|mu| Box::new(Coulomb::isotropic(mu).unwrap()) as Box<dyn signorini_contact::Law>);
         let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
         system.prepare().unwrap();

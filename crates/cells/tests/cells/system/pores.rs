@@ -30,7 +30,7 @@ fn close(
     let mut contact =
         Contact::new("pore", (itself.clone(), &body), (itself, &body), Sampling::GaussPoints, how).unwrap();
     contact.pairing = pairing;
-    contact.friction = friction.map(coulomb);
+    contact.law.friction = friction.map(coulomb);
     let mut system = System {
         supports: vec![
             support(0, "axis", [constant(0.0), None, None]),
@@ -107,7 +107,7 @@ fn kept_pairs_have_exact_tangents() {
             let (upper, lower) = (disc("upper", 0.985, 3), disc("lower", -1.0, 3));
             let mut contact = contact(("skin", &upper), ("skin", &lower), Sampling::GaussPoints, how);
             contact.pairing = Pairing::AtStart;
-            contact.friction = friction.map(coulomb);
+            contact.law.friction = friction.map(coulomb);
             let bodies: Vec<Box<dyn Body>> = vec![Box::new(upper), Box::new(lower)];
             let mut system = System { bodies, contacts: vec![Box::new(contact)], ..System::default() };
             system.prepare().unwrap();
@@ -143,7 +143,7 @@ fn kept_pairs_rub_as_closest_points_do() {
         };
         let (upper, lower) = (disc("upper", 1.0), disc("lower", -1.0));
         let mut contact = contact(("skin", &upper), ("skin", &lower), Sampling::GaussPoints, PENALTY);
-        (contact.pairing, contact.friction) = (pairing, Some(coulomb(mu)));
+        (contact.pairing, contact.law.friction) = (pairing, Some(coulomb(mu)));
         let mut top = support(0, "middle", [None, None, None]);
         top.displacement[0] = Some(Arc::new(|_, t| 0.02 * (t - 1.0f64).max(0.0)));
         top.displacement[1] = Some(Arc::new(|_, t| -0.04 * t.min(1.0)));

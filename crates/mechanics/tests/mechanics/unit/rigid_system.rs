@@ -39,7 +39,7 @@ fn system(
             let of = |k: usize| (Part::from(k), system.bodies[k].as_ref());
             let mut contact =
                 Contact::new("touch", of(a), of(b), Sampling::Nodes, Enforcement::AugmentedLagrangian).unwrap();
-            contact.friction = (mu > 0.0).then(|| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
+            contact.law.friction = (mu > 0.0).then(|| Box::new(Coulomb::isotropic(mu).unwrap()) as _);
             system.contacts.push(Box::new(contact));
         }
     }

@@ -4,7 +4,7 @@ use signorini_contact::law::Status;
 use signorini_contact::{Coulomb, Law};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
-use signorini_mechanics::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
+use signorini_mechanics::interaction::{Assembler, Bodies, Interaction, Iterated, InteractionUnknowns};
 use signorini_mechanics::{Enforcement, SiteResult};
 use signorini_rope::curve_pair::contact::CurveContact;
 use signorini_solve::general::Entries;
@@ -62,8 +62,8 @@ pub fn taylor(
     (law, expected): (Option<Box<dyn Law>>, Status),
     enforcement: Enforcement,
 ) -> [f64; 2] {
-    contact.friction = law;
-    contact.enforcement = enforcement;
+    contact.law.friction = law;
+    contact.law.enforcement = enforcement;
     let n: usize = bodies.iter().map(|b| b.unknowns()).sum();
     let noise = |seed: f64| -> Vec<f64> { (0..n).map(|k| (seed + 1.3 * k as f64).sin()).collect() };
     let start: Vec<BodyState> = bodies.iter().map(|b| b.start()).collect();
@@ -131,7 +131,7 @@ pub fn laws() -> [(Option<Box<dyn Law>>, Status); 4] {
 
 /// Forces under friction in a moved state: the sum of their powers in each rigid motion, and the largest force.
 pub fn balance((bodies, mut contact): Touching, law: Option<Box<dyn Law>>) -> ([f64; 6], f64) {
-    contact.friction = law;
+    contact.law.friction = law;
     let all: Vec<&dyn Body> = bodies.iter().map(|b| b.as_ref()).collect();
     let first = first_unknowns(&all);
     let n = first[bodies.len()];

@@ -153,10 +153,10 @@ impl Planner<'_> {
                 problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
                 _ => AxisChoice::Material,
             };
-            contact.friction = Some(law);
+            contact.law.friction = Some(law);
         }
         // What of a body of small strains faces another part of it turns little within an increment.
-        let keeps = contact.friction.is_none() || matches!(kind, Kind::Cells);
+        let keeps = contact.law.friction.is_none() || matches!(kind, Kind::Cells);
         if slave.body == master.body && body(&slave).is_linear() && keeps {
             contact.pairing = Pairing::AtStart;
         }
@@ -212,7 +212,7 @@ impl Planner<'_> {
         }
         let axis = match &key.friction {
             Some(friction) => {
-                contact.friction = Some(self.law(friction)?);
+                contact.law.friction = Some(self.law(friction)?);
                 match friction {
                     problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
                     _ => AxisChoice::Tangent,

@@ -50,18 +50,18 @@ impl Planner<'_> {
         let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
             .map_err(|error| problem.error(key, error.to_string()))?;
         if let Some(friction) = &key.friction {
-            contact.friction = Some(self.law(friction)?);
+            contact.law.friction = Some(self.law(friction)?);
             if let Friction::Coulomb(coulomb) = friction {
-                contact.axis = self.axis_choice(coulomb)?;
-                self.check_axis(coulomb, contact.axis, &kinds[master.body])?;
-                self.check_along(coulomb, contact.axis, (slave, system))?;
+                contact.set_axis(self.axis_choice(coulomb)?);
+                self.check_axis(coulomb, contact.axis(), &kinds[master.body])?;
+                self.check_along(coulomb, contact.axis(), (slave, system))?;
             }
         }
         let slides_little = key.sliding == Some(Sliding::Small);
         if slides_little {
             contact.slides_little();
         }
-        let tested = ContactInfo { slides_little, ..ContactInfo::by("mortar", contact.axis) };
+        let tested = ContactInfo { slides_little, ..ContactInfo::by("mortar", contact.axis()) };
         Ok(Some((Box::new(contact), tested)))
     }
 

@@ -169,7 +169,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
         Contact {
             name: contact.name().to_string(),
             bodies,
-            law: contact.law().map(|law| law_of(law, problem, contact.name())),
+            law: contact.friction().map(|law| law_of(law, problem, contact.name())),
             is_small_sliding: tested.slides_little,
             carries,
             wanted_penetration: wanted.unwrap_or(0.0),

@@ -132,7 +132,7 @@ pub fn step_report(
             .zip(&result.dissipated)
             .map(|(((contact, tested), sites), dissipated)| {
                 let report = contact_report(plan, (contact.as_ref(), tested), sites);
-                let dissipation = contact.law().map(|_| *dissipated);
+                let dissipation = contact.friction().map(|_| *dissipated);
                 (contact.name().to_string(), ContactReport { dissipation, ..report })
             })
             .collect(),
@@ -259,7 +259,7 @@ fn contact_report(
     };
     let zones = if is_curve { runs(sites) } else { zones(sites) };
     let components: Vec<Component> = zones.iter().map(component).collect();
-    let rubs = contact.law().is_some();
+    let rubs = contact.friction().is_some();
     let area_of_contact: f64 = sites.iter().map(SiteResult::contact_area).sum();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
@@ -290,7 +290,7 @@ fn contact_report(
 
 /// What friction could hold of a rope where it touches; none where its law has no coefficients, or no axes that stay.
 fn rope_limits((contact, tested): (&dyn Interaction, &ContactInfo), sites: &[SiteResult]) -> Option<RopeLimits> {
-    let [along, across] = contact.law()?.per_pressure()?;
+    let [along, across] = contact.friction()?.per_pressure()?;
     let friction = match tested.axis {
         AxisChoice::OnMaster(axis) => {
             Friction::Attached { coefficients: [along, across], axis: Arc::new(move |_| axis) }
@@ -336,7 +336,7 @@ fn warn_of_closing(plan: &MechanicsPlan, [before, now]: [&IncrementResult; 2], t
     let near = LIES_ON * plan.system.size();
     for (k, (contact, sites)) in plan.system.contacts.iter().zip(&now.sites).enumerate() {
         let of_surface = plan.contacts[k].carries == TractionKind::Pressure && !plan.contacts[k].along_a_curve;
-        if contact.law().is_none() || !of_surface {
+        if contact.friction().is_none() || !of_surface {
             continue;
         }
         let start = || plan.system.sites(k, &plan.system.start()).unwrap_or_default();

@@ -16,6 +16,7 @@ mod condensed;
 mod contacts;
 mod groove;
 mod held;
+mod laws;
 mod mortar;
 mod ring;
 mod sliding;
@@ -118,13 +119,13 @@ fn touch(
     match test.into() {
         Test::Sites(sampling) => {
             let mut contact = Contact::new("touch", of(slave), of(master), sampling, enforcement).unwrap();
-            contact.friction = friction;
+            contact.law.friction = friction;
             system.contacts.push(Box::new(contact));
         }
         Test::Mortar(extra) => {
             let mut contact = Mortar::new("touch", of(slave), of(master), enforcement).unwrap();
             contact.refine(extra);
-            contact.friction = friction;
+            contact.law.friction = friction;
             system.contacts.push(Box::new(contact));
         }
     }

@@ -330,8 +330,8 @@ fn orthotropic_slip_is_associated() {
         let (mu, along) = ([0.3, 0.5], v(0.8, 0.6, 0.0));
         let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
         let mut contact = Mortar::new("touch", of(1, "bottom"), of(0, "top"), Enforcement::Multiplier).unwrap();
-        contact.friction = Some(Box::new(Coulomb::orthotropic(mu).unwrap()));
-        contact.axis = if on_master { AxisChoice::OnMaster(along) } else { AxisChoice::OnSlave(along) };
+        contact.law.friction = Some(Box::new(Coulomb::orthotropic(mu).unwrap()));
+        contact.set_axis(if on_master { AxisChoice::OnMaster(along) } else { AxisChoice::OnSlave(along) });
         system.contacts.push(Box::new(contact));
         let (_, results) = run(&mut system, &[1.0]);
         let carrying: Vec<&SiteResult> = results[0].sites[0].iter().filter(|s| s.pressure > 0.0).collect();

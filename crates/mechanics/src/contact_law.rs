@@ -1,0 +1,258 @@
+//! The law of a contact and its enforcement at points: from measures to tractions. Sites, nodes of mortar and points of curves
+//! have it in common.
+//!
+//! At every point, with gap `g`, slip `e` since the last state and the traction `λ` (pressure, and two components of friction
+//! along axes), which is an unknown:
+//!
+//! - trial `ζ = λ - s (λ - λ_0) + c (-g, e)`, traction `Π(ζ)` by the law;
+//! - the equation `(w/c) (Π(ζ) - λ) = 0`, for which `w` is an area (Alart & Curnier 1991).
+
+use crate::enforcement::{Enforcement, Outer};
+use crate::interaction::{Assembler, OuterIteration, hardened, take_over, towards};
+use crate::simpler::SimplerFriction;
+use crate::site_result::SiteResult;
+use signorini_contact::law::{LawPoint, Projected, frictionless};
+use signorini_contact::{Law, Status};
+
+/// The law of a contact, how it is enforced, and the tractions of its points.
+#[derive(Debug)]
+pub struct ContactLaw {
+    /// Without it the sides slide freely.
+    pub friction: Option<Box<dyn Law>>,
+    pub enforcement: Enforcement,
+    /// The component of friction that a plane problem has; both in space.
+    pub(crate) in_plane: Option<usize>,
+    /// Traction per unit of gap, and of slip, of each point: the scale `c` of the trial, not the penalty.
+    pub(crate) stiffness: Vec<f64>,
+    /// The area of each point, `w`: its equations are weighted by it.
+    pub(crate) areas: Vec<f64>,
+    /// That scale over the penalty, `s`.
+    pub(crate) softness: f64,
+    /// The traction of each point at the last state, with friction along its axes: `λ_0`.
+    pub(crate) kept: Vec<[f64; 3]>,
+    /// Times of the last state and of the one that is looked for.
+    pub times: [f64; 2],
+    /// What is stated, while a start is looked for with something simpler.
+    stated: Option<Stated>,
+}
+
+/// What a contact states while something simpler stands in its place.
+#[derive(Debug)]
+struct Stated {
+    /// None where it stayed.
+    friction: Option<Box<dyn Law>>,
+    enforcement: Enforcement,
+    softness: f64,
+}
+
+/// What the law is given at a point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PointMeasure {
+    pub gap: f64,
+    pub slip: [f64; 2],
+    /// Along which axes the sides may slide; none where there is no friction yet, as they were apart at the last state.
+    pub slides: Option<[bool; 2]>,
+    /// The traction to give way from, where it is not that of the last state.
+    pub base: Option<[f64; 3]>,
+    /// Friction besides that of the trial about which the law is linearised.
+    pub besides: [f64; 2],
+}
+
+/// Share of the limit of friction within which a point is at it, as what slipped is when the next increment starts. Either
+/// derivative serves at a switch; with that of slip a slip zone does not start each increment stuck, to be freed point by
+/// point. More than the tolerance of Newton's method, which ends that near to the limit.
+const AT_LIMIT: f64 = 1e-7;
+
+/// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
+/// points of a stiff body carry together need not be unique.
+const UNDETERMINED: f64 = 1e-6;
+
+impl ContactLaw {
+    /// Without friction, and without tractions yet, at points with these scales of trials and areas; none of contacts whose points
+    /// are found anew in every state.
+    pub fn new(enforcement: Enforcement, stiffness: Vec<f64>, areas: Vec<f64>) -> Self {
+        ContactLaw {
+            friction: None,
+            enforcement,
+            in_plane: None,
+            softness: enforcement.softness(),
+            kept: vec![[0.0; 3]; stiffness.len()],
+            stiffness,
+            areas,
+            times: [0.0; 2],
+            stated: None,
+        }
+    }
+
+    /// Time that passes in an increment.
+    pub fn duration(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
+    /// Which components of a traction are unknowns: 0 is the pressure.
+    pub(crate) fn slots(&self) -> &'static [usize] {
+        match (&self.friction, self.in_plane) {
+            (None, _) => &[0],
+            (Some(_), None) => &[0, 1, 2],
+            (Some(_), Some(0)) => &[0, 1],
+            (Some(_), Some(_)) => &[0, 2],
+        }
+    }
+
+    /// Whether the tractions are unknowns and hold exactly.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.enforcement == Enforcement::Multiplier && !self.kept.is_empty()
+    }
+
+    /// The traction of each unknown per gap, and the area of its point.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.stiffness.iter().zip(&self.areas).flat_map(|(c, w)| self.slots().iter().map(move |_| [*c, *w]))
+    }
+
+    /// The unknowns of all points as at the last state.
+    pub(crate) fn multipliers(&self) -> Vec<f64> {
+        self.kept.iter().flat_map(|kept| self.slots().iter().map(|slot| kept[*slot])).collect()
+    }
+
+    /// The traction of a point among the unknowns of all.
+    pub(crate) fn multiplier(&self, k: usize, multipliers: &[f64]) -> [f64; 3] {
+        let slots = self.slots();
+        let mut out = [0.0; 3];
+        slots.iter().zip(&multipliers[slots.len() * k..]).for_each(|(slot, value)| out[*slot] = *value);
+        out
+    }
+
+    /// The traction to give way from, by what a point carried at the last state.
+    fn base(&self, k: usize) -> [f64; 3] {
+        self.enforcement.base(self.kept[k])
+    }
+
+    /// The trial of the pressure of a point without a gap.
+    pub(crate) fn pressing(&self, k: usize, unknown: f64, base: Option<f64>) -> f64 {
+        unknown - self.softness * (unknown - base.unwrap_or_else(|| self.base(k)[0]))
+    }
+
+    /// The traction of a point by the law, and the trial of its friction.
+    pub(crate) fn traction(&self, k: usize, unknown: [f64; 3], measure: &PointMeasure) -> (Projected, [f64; 2]) {
+        let c = self.stiffness[k];
+        let base = measure.base.unwrap_or_else(|| self.base(k));
+        let lambda: [f64; 3] = std::array::from_fn(|i| unknown[i] - self.softness * (unknown[i] - base[i]));
+        let pressing = lambda[0] - c * measure.gap;
+        let (Some(law), Some(slides)) = (&self.friction, measure.slides) else {
+            return (frictionless(pressing), [0.0; 2]);
+        };
+        let trial = |i: usize| if slides[i] { lambda[i + 1] + c * measure.slip[i] } else { 0.0 };
+        let point = LawPoint { per_gap: c, duration: self.duration() };
+        let project = |trial: [f64; 3]| law.traction(trial, &point);
+        let about = |i: usize| if slides[i] { trial(i) + measure.besides[i] } else { 0.0 };
+        let mut projected = project([pressing, about(0), about(1)]);
+        for i in (0..2).filter(|i| !slides[*i]) {
+            projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
+        }
+        let [p, t1, t2] = projected.traction;
+        if projected.status == Status::Stick && law.utilisation([t1, t2], p) > 1.0 - AT_LIMIT {
+            let beyond = project([pressing, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
+            (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
+        }
+        if measure.besides != [0.0; 2] {
+            let d = projected.derivative;
+            (0..2).for_each(|a| {
+                projected.traction[1 + a] -= d[1 + a][1] * measure.besides[0] + d[1 + a][2] * measure.besides[1]
+            });
+        }
+        (projected, [trial(0), trial(1)])
+    }
+
+    /// Adds the equations of a point, without what other unknowns change in them; `row` is the number of the first.
+    pub(crate) fn add_equations(
+        &self,
+        k: usize,
+        row: u32,
+        unknown: [f64; 3],
+        projected: &Projected,
+        out: &mut Assembler<'_>,
+    ) {
+        let scale = self.areas[k] / self.stiffness[k];
+        // Tractions that nothing determines stay where they are; those of open points are to vanish.
+        let resists = if projected.status == Status::Open { 1.0 } else { 1.0 + UNDETERMINED };
+        for (i, &slot) in (0u32..).zip(self.slots()) {
+            let traction = projected.traction[slot];
+            out.residual[(row + i) as usize] += scale * (traction - unknown[slot]);
+            out.sizes[(row + i) as usize] += scale * (traction.abs() + unknown[slot].abs());
+            let Some(tangent) = &mut out.tangent else { continue };
+            for (j, &other) in (0u32..).zip(self.slots()) {
+                let own = if i == j { resists } else { 0.0 };
+                let follows = (1.0 - self.softness) * projected.derivative[slot][other];
+                if follows != own {
+                    tangent.add(row + i, row + j, scale * (follows - own));
+                }
+            }
+        }
+    }
+
+    /// Ends an increment.
+    pub(crate) fn end(&mut self) {
+        self.softness = self.enforcement.softness();
+    }
+
+    /// Takes the tractions of a state from which the next increment starts.
+    pub fn accept(&mut self, tractions: Vec<[f64; 3]>) {
+        self.kept = tractions;
+        self.times[0] = self.times[1];
+    }
+
+    /// Forgets what the points carried.
+    pub(crate) fn unload(&mut self) {
+        self.kept.iter_mut().for_each(|kept| *kept = [0.0; 3]);
+    }
+
+    /// Whether an outer iteration takes the tractions that were found as those to give way from.
+    pub(crate) fn takes_over(&self) -> bool {
+        self.enforcement.outer() == Outer::TakesOver
+    }
+
+    /// An outer iteration at a state with these results, and these tractions where it takes them: the largest relative change.
+    pub(crate) fn augment(&mut self, found: &[SiteResult], around: &OuterIteration, tractions: &[[f64; 3]]) -> f64 {
+        match self.enforcement.outer() {
+            Outer::TakesOver => {
+                let change = take_over(self.kept.iter_mut().zip(&self.stiffness), tractions, (around, self.softness));
+                self.softness = hardened(self.softness, change, around);
+                change
+            }
+            Outer::Towards(wanted) => towards(wanted, found, &mut self.stiffness),
+            Outer::Nothing => 0.0,
+        }
+    }
+
+    /// Scales the stiffness of trials, not that of penalties: whether there are trials to scale.
+    pub(crate) fn scale_trials(&mut self, factor: f64) -> bool {
+        // Nitsche's method has its stiffness in the state.
+        if self.enforcement.takes_stress() || self.kept.is_empty() {
+            return false;
+        }
+        self.stiffness.iter_mut().for_each(|c| *c *= factor);
+        self.softness *= factor;
+        true
+    }
+
+    /// Until [`restore`](ContactLaw::restore): penalties in place of multipliers, and simpler friction where that is asked for.
+    /// What has no tractions as unknowns keeps its enforcement.
+    pub(crate) fn simplify(&mut self, friction: SimplerFriction) {
+        let (enforcement, softness) = (self.enforcement, self.softness);
+        let friction = friction.instead_of(&mut self.friction);
+        if !self.kept.is_empty() {
+            self.enforcement = Enforcement::Penalty { wanted_penetration: None };
+            self.softness = self.enforcement.softness();
+        }
+        self.stated = Some(Stated { friction, enforcement, softness });
+    }
+
+    /// Ends what [`simplify`](ContactLaw::simplify) began.
+    pub(crate) fn restore(&mut self) {
+        let Some(stated) = self.stated.take() else { return };
+        if stated.friction.is_some() {
+            self.friction = stated.friction;
+        }
+        (self.enforcement, self.softness) = (stated.enforcement, stated.softness);
+    }
+}

@@ -37,8 +37,9 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Direction, Function, Hold, Load, Master, Order,
-    PlaceError, Samples, Sampling, SlavePoint, Subspaces,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Direction,
+    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack, SlavePoint,
+    Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -270,25 +271,6 @@ impl<const D: usize> Body for CellSolid<D> {
         Ok(energy)
     }
 
-    fn is_linear(&self) -> bool {
-        true
-    }
-
-    fn places(&self) -> Vec<[f64; 3]> {
-        let functions = 0..self.body.function_count();
-        functions.flat_map(|f| [spatial(&self.body.position(f)).into(); D]).collect()
-    }
-
-    fn subspaces(&self) -> Option<Subspaces<'_>> {
-        let own = self.stiffness.iter().enumerate();
-        let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
-        Some(Subspaces { stiffness, sets: self.body.schwarz_sets() })
-    }
-
-    fn many_unknowns(&self) -> Option<usize> {
-        Some(if D == 3 { MANY_UNKNOWNS } else { MANY_IN_THE_PLANE })
-    }
-
     /// Equations on a side of the box, one for each function on it and component that is held; none elsewhere.
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         hold.check_components(&self.name)?;
@@ -300,20 +282,6 @@ impl<const D: usize> Body for CellSolid<D> {
             HeldBy::Side(side) => self.constraints(side, hold, &state.configuration),
             HeldBy::Terms(_) => Ok(Vec::new()),
         }
-    }
-
-    fn hold_weakly(
-        &self,
-        on: Option<&str>,
-        hold: &Hold<'_>,
-        state: &BodyState,
-        order: Order,
-        out: &mut Contribution,
-    ) -> Result<Option<Vector<3>>, PlaceError> {
-        let surface = self.surface(on)?;
-        let HeldBy::Terms(terms) = &surface.held else { return Ok(None) };
-        let terms = terms.get_or_init(|| WeakHold::new(self, self.points_of(surface)));
-        Ok(Some(self.add_terms(terms, hold, &state.configuration, order, out)))
     }
 
     fn load(
@@ -338,21 +306,6 @@ impl<const D: usize> Body for CellSolid<D> {
                 surface.spread.get_or_init(|| self.spread(surface, &spacing).0).clone()
             }
         })
-    }
-
-    fn points_apart(&self, on: Option<&str>) -> Vec<(Point<3>, f64)> {
-        let points = self.surface(on).map_or(&[][..], |surface| self.points_of(surface));
-        points.iter().map(|p| (spatial(&p.x), self.distance_of_points(p.cell))).collect()
-    }
-
-    fn test_at_least_every(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
-        self.divide(on, apart);
-    }
-
-    fn spread_sites(&self, on: Option<&str>, spacing: f64) -> Result<(Vec<mechanics::Site>, f64), PlaceError> {
-        let (sites, far) = self.spread(self.surface(on)?, &|_| spacing);
-        // Points in the middle of what they stand for are up to twice as far apart as the farthest point from them.
-        Ok((sites, (2.0 * far).max(1.0) * spacing))
     }
 
     fn placed(&self, state: &BodyState, site: &mechanics::Site) -> SlavePoint {
@@ -386,30 +339,6 @@ impl<const D: usize> Body for CellSolid<D> {
         modulus * site.weight * self.body.degree() as f64 / self.cell_size(point)
     }
 
-    /// Of the cell that controls the stress there.
-    fn traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<Direction> {
-        let point = &self.points[site.patch as usize];
-        let cell = self.body.cells()[point.cell].stress_cell;
-        let mut t = Tabulation::default();
-        self.body.functions_at(cell, &point.x, &mut t);
-        let u = &state.configuration;
-        let mut out = Direction::default();
-        for (k, value) in self.body.tractions(&point.x, &point.normal, &t).iter().enumerate() {
-            let function = self.body.cells()[cell].functions[k / D];
-            if let Some(unknown) = self.unknown(function, k % D) {
-                let value = spatial(&Point::<D>::from(*value));
-                out.vector += value * u[unknown as usize];
-                out.functions.push(Function { unknown, value, ..Function::default() });
-            }
-        }
-        Some(out)
-    }
-
-    /// `E p²/h`.
-    fn stabilisation(&self, site: &mechanics::Site) -> f64 {
-        self.body.degree() as f64 * self.site_stiffness(site) / site.weight
-    }
-
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
         let u = &state.configuration;
         std::array::from_fn(|mode| {
@@ -434,15 +363,97 @@ impl<const D: usize> Body for CellSolid<D> {
         self.size
     }
 
+    fn fields(&self, state: &BodyState) -> BodyFields {
+        self.shown.get_or_init(|| Shown::new(&self.body)).fields(&self.body, &state.configuration)
+    }
+}
+
+impl<const D: usize> Kinematics for CellSolid<D> {}
+
+impl<const D: usize> Elimination for CellSolid<D> {
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn places(&self) -> Vec<[f64; 3]> {
+        let functions = 0..self.body.function_count();
+        functions.flat_map(|f| [spatial(&self.body.position(f)).into(); D]).collect()
+    }
+
+    fn subspaces(&self) -> Option<Subspaces<'_>> {
+        let own = self.stiffness.iter().enumerate();
+        let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
+        Some(Subspaces { stiffness, sets: self.body.schwarz_sets() })
+    }
+
+    fn many_unknowns(&self) -> Option<usize> {
+        Some(if D == 3 { MANY_UNKNOWNS } else { MANY_IN_THE_PLANE })
+    }
+
+    fn hold_weakly(
+        &self,
+        on: Option<&str>,
+        hold: &Hold<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<Option<Vector<3>>, PlaceError> {
+        let surface = self.surface(on)?;
+        let HeldBy::Terms(terms) = &surface.held else { return Ok(None) };
+        let terms = terms.get_or_init(|| WeakHold::new(self, self.points_of(surface)));
+        Ok(Some(self.add_terms(terms, hold, &state.configuration, order, out)))
+    }
+}
+
+impl<const D: usize> ContactSides for CellSolid<D> {
+    fn points_apart(&self, on: Option<&str>) -> Vec<(Point<3>, f64)> {
+        let points = self.surface(on).map_or(&[][..], |surface| self.points_of(surface));
+        points.iter().map(|p| (spatial(&p.x), self.distance_of_points(p.cell))).collect()
+    }
+
+    fn test_at_least_every(&mut self, on: Option<&str>, apart: &dyn Fn(&Point<3>) -> f64) {
+        self.divide(on, apart);
+    }
+
+    fn spread_sites(&self, on: Option<&str>, spacing: f64) -> Result<Option<(Vec<mechanics::Site>, f64)>, PlaceError> {
+        let (sites, far) = self.spread(self.surface(on)?, &|_| spacing);
+        // Points in the middle of what they stand for are up to twice as far apart as the farthest point from them.
+        Ok(Some((sites, (2.0 * far).max(1.0) * spacing)))
+    }
+
+    /// Of the cell that controls the stress there.
+    fn traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<Direction> {
+        let point = &self.points[site.patch as usize];
+        let cell = self.body.cells()[point.cell].stress_cell;
+        let mut t = Tabulation::default();
+        self.body.functions_at(cell, &point.x, &mut t);
+        let u = &state.configuration;
+        let mut out = Direction::default();
+        for (k, value) in self.body.tractions(&point.x, &point.normal, &t).iter().enumerate() {
+            let function = self.body.cells()[cell].functions[k / D];
+            if let Some(unknown) = self.unknown(function, k % D) {
+                let value = spatial(&Point::<D>::from(*value));
+                out.vector += value * u[unknown as usize];
+                out.functions.push(Function { unknown, value, ..Function::default() });
+            }
+        }
+        Some(out)
+    }
+
+    /// `E p²/h`.
+    fn stabilisation(&self, site: &mechanics::Site) -> Option<f64> {
+        Some(self.body.degree() as f64 * self.site_stiffness(site) / site.weight)
+    }
+}
+
+impl<const D: usize> Slack for CellSolid<D> {}
+
+impl<const D: usize> BoxOfMaterial for CellSolid<D> {
     fn samples(&self, state: &BodyState) -> Option<Samples> {
         Some(self.body.samples(&state.configuration))
     }
 
     fn means(&self, state: &BodyState) -> Option<mechanics::Means> {
         self.body.means(&state.configuration)
-    }
-
-    fn fields(&self, state: &BodyState) -> BodyFields {
-        self.shown.get_or_init(|| Shown::new(&self.body)).fields(&self.body, &state.configuration)
     }
 }

@@ -19,8 +19,8 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::interaction::{NotItsHistory, OuterIteration, penalty_factor};
 use signorini_mechanics::{
-    Assembler, Bodies, Body, ContactLaw, Drawn, Enforcement, Function, Interaction, InteractionUnknowns, Iterated, Passing,
-    PlaceError, Sampling, Site, SiteResult,
+    Assembler, Bodies, Body, ContactLaw, Drawn, Enforcement, Function, Interaction, InteractionUnknowns, Iterated,
+    Passing, PlaceError, Sampling, Site, SiteResult,
 };
 use std::collections::BTreeMap;
 
@@ -128,7 +128,10 @@ impl Surface {
                 nearest_distance(&places)
             }
         };
-        let (sites, spacing) = body.spread_sites(on, spacing)?;
+        let (sites, spacing) = body.spread_sites(on, spacing)?.ok_or_else(|| PlaceError::Unsuitable {
+            body: body.name().to_string(),
+            message: "contact by discs is for bodies of finite cells only".to_string(),
+        })?;
         let radius = cover.radius.unwrap_or(spacing);
         let offset = if cover.centres == Centres::Within { radius } else { 0.0 };
         let start = body.start();

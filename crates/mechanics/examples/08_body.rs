@@ -6,8 +6,9 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contact, Contribution, Enforcement, Function, Hold, Load,
-    Master, Motion, Order, Part, PlaceError, PlacedLoad, RigidBody, Sampling, Site, SlavePoint, System, TimedLoad,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, Contact, ContactSides, Contribution,
+    Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError, PlacedLoad,
+    RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
 };
 use std::sync::Arc;
 
@@ -38,16 +39,20 @@ impl Body for SprungPoint {
     fn name(&self) -> &str {
         "point"
     }
+
     fn unknowns(&self) -> usize {
         3
     }
+
     fn start(&self) -> BodyState {
         BodyState { configuration: vec![0.0; 3], internal: Vec::new() }
     }
+
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
         BodyState { configuration, internal: Vec::new() }
     }
+
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let u = Self::moved(state);
         let force = u * self.stiffness;
@@ -57,9 +62,11 @@ impl Body for SprungPoint {
         }
         Ok(0.5 * force.dot(&u))
     }
+
     fn hold(&self, _: Option<&str>, _: &Hold<'_>, _: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         refuse("springs hold it")
     }
+
     fn load(
         &self,
         _: Option<&str>,
@@ -72,9 +79,11 @@ impl Body for SprungPoint {
         out.forces.iter_mut().zip(force).for_each(|(sum, f)| *sum -= f);
         Ok(())
     }
+
     fn sites(&self, _: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
         Ok(vec![Site { weight: 1.0, ..Site::default() }])
     }
+
     fn placed(&self, state: &BodyState, _: &Site) -> SlavePoint {
         let function = |i: usize| Function { unknown: i as u32, value: axis(i), ..Function::default() };
         SlavePoint {
@@ -84,23 +93,38 @@ impl Body for SprungPoint {
             ..SlavePoint::default()
         }
     }
+
     fn master<'a>(&'a self, _: Option<&str>, _: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
         refuse("a point is tested, not touched: name it first")
     }
+
     fn site_stiffness(&self, _: &Site) -> f64 {
         self.stiffness
     }
+
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
         let x = self.at + Self::moved(state);
         std::array::from_fn(|mode| if mode < 3 { axis(mode) } else { axis(mode - 3).cross(&x) }.as_slice().to_vec())
     }
+
     fn size(&self) -> f64 {
         1.0
     }
+
     fn fields(&self, state: &BodyState) -> BodyFields {
         BodyFields { points: vec![self.at], displacement: vec![Self::moved(state)], ..BodyFields::default() }
     }
 }
+
+impl Kinematics for SprungPoint {}
+
+impl Elimination for SprungPoint {}
+
+impl ContactSides for SprungPoint {}
+
+impl Slack for SprungPoint {}
+
+impl BoxOfMaterial for SprungPoint {}
 
 pub fn main() {
     // 1. A point on springs, at rest on a plane that is inclined.

@@ -164,8 +164,9 @@ pub struct BodyFields {
     pub cell_data: Vec<(String, usize, Vec<f64>)>,
 }
 
-/// A body of a system.
-pub trait Body: Send + Sync {
+/// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
+/// a body without it implements these as they are.
+pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Send + Sync {
     fn name(&self) -> &str;
 
     /// Number of unknowns.
@@ -174,11 +175,66 @@ pub trait Body: Send + Sync {
     /// At rest, or as the body starts.
     fn start(&self) -> BodyState;
 
-    /// Brings what is prescribed in a state, such as the motion of a rigid body, to a time.
-    fn prescribe(&self, _time: f64, _state: &mut BodyState) {}
-
     /// The state after `share` of a step of the unknowns: a retraction, exact to second order along straight steps.
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState;
+
+    /// Adds internal forces, and their derivative if asked for; the energy stored.
+    ///
+    /// # Errors
+    /// States that the body cannot have.
+    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError>;
+
+    /// The equations of a place that is held; `None` for the whole body.
+    ///
+    /// # Errors
+    /// A place that is not there, or has nothing to hold.
+    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError>;
+
+    /// Adds a load: minus the force, and its derivative.
+    ///
+    /// # Errors
+    /// A place that is not there, or a load that cannot act on it.
+    fn load(
+        &self,
+        on: Option<&str>,
+        load: &Load<'_>,
+        state: &BodyState,
+        order: Order,
+        out: &mut Contribution,
+    ) -> Result<(), PlaceError>;
+
+    /// The points of a place that are tested for contact.
+    ///
+    /// # Errors
+    /// A place that is not there, or without such points.
+    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError>;
+
+    /// A site where it is now.
+    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint;
+
+    /// A place as it may be touched.
+    ///
+    /// # Errors
+    /// A place that is not there, or that cannot be touched.
+    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError>;
+
+    /// The force that moves a site by a unit of length, about: the scale of penalties.
+    fn site_stiffness(&self, site: &Site) -> f64;
+
+    /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
+    /// origin): for resultants and free motions.
+    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6];
+
+    /// The largest extent of the body: the scale of lengths.
+    fn size(&self) -> f64;
+
+    fn fields(&self, state: &BodyState) -> BodyFields;
+}
+
+/// How a body moves, beyond a step of its unknowns.
+pub trait Kinematics {
+    /// Brings what is prescribed in a state, such as the motion of a rigid body, to a time.
+    fn prescribe(&self, _time: f64, _state: &mut BodyState) {}
 
     /// The state at a share of the way from one state to another.
     fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
@@ -187,12 +243,29 @@ pub trait Body: Send + Sync {
         BodyState { configuration, internal: from.internal.clone() }
     }
 
-    /// Adds internal forces, and their derivative if asked for; the energy stored.
-    ///
-    /// # Errors
-    /// States that the body cannot have.
-    fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError>;
+    /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.
+    fn spins(&self) -> Vec<[u32; 3]> {
+        Vec::new()
+    }
 
+    /// Where a place is that is a single point, before the body deforms.
+    fn point(&self, _on: Option<&str>) -> Option<Point<3>> {
+        None
+    }
+
+    /// Whether the body has no stiffness of its own.
+    fn is_rigid(&self) -> bool {
+        false
+    }
+
+    /// Whether what a support holds of the body changes with time.
+    fn holds_change(&self) -> bool {
+        false
+    }
+}
+
+/// What a linear solver may know of a body.
+pub trait Elimination {
     /// Whether the derivative of the internal forces is the same in all states.
     fn is_linear(&self) -> bool {
         false
@@ -214,17 +287,11 @@ pub trait Body: Send + Sync {
         None
     }
 
-    /// Above so many unknowns of the system iterations with [`subspaces`](Body::subspaces) are faster than a factorisation;
+    /// Above so many unknowns of the system iterations with [`subspaces`](Elimination::subspaces) are faster than a factorisation;
     /// none where there are none.
     fn many_unknowns(&self) -> Option<usize> {
         None
     }
-
-    /// The equations of a place that is held; `None` for the whole body.
-    ///
-    /// # Errors
-    /// A place that is not there, or has nothing to hold.
-    fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError>;
 
     /// Adds the terms that hold a place which no equation between unknowns can hold, such as a boundary that runs through
     /// cells; the force of the support on the body. None where [`hold`](Body::hold) says it all.
@@ -241,83 +308,10 @@ pub trait Body: Send + Sync {
     ) -> Result<Option<Vector<3>>, PlaceError> {
         Ok(None)
     }
+}
 
-    /// Adds a load: minus the force, and its derivative.
-    ///
-    /// # Errors
-    /// A place that is not there, or a load that cannot act on it.
-    fn load(
-        &self,
-        on: Option<&str>,
-        load: &Load<'_>,
-        state: &BodyState,
-        order: Order,
-        out: &mut Contribution,
-    ) -> Result<(), PlaceError>;
-
-    /// Where a place is that is a single point, before the body deforms.
-    fn point(&self, _on: Option<&str>) -> Option<Point<3>> {
-        None
-    }
-
-    /// The points of a place that are tested for contact.
-    ///
-    /// # Errors
-    /// A place that is not there, or without such points.
-    fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError>;
-
-    /// Tests a place at points of quadrature at most as far apart as told for the points near them, from now on. Bodies whose
-    /// points cannot be more leave them.
-    fn test_at_least_every(&mut self, _on: Option<&str>, _apart: &dyn Fn(&Point<3>) -> f64) {}
-
-    /// Places on a surface without faces, and how far apart forces near each may act so that its functions follow them: as the
-    /// points of its own quadrature. None where that is not known.
-    fn points_apart(&self, _on: Option<&str>) -> Vec<(Point<3>, f64)> {
-        Vec::new()
-    }
-
-    /// A site where it is now.
-    fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint;
-
-    /// A place as it may be touched.
-    ///
-    /// # Errors
-    /// A place that is not there, or that cannot be touched.
-    fn master<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError>;
-
-    /// The force that moves a site by a unit of length, about: the scale of penalties.
-    fn site_stiffness(&self, site: &Site) -> f64;
-
-    /// The traction `σ n` at a site by the stress of the body, per area of the site, with what changes it; none of a body
-    /// whose stress is not known at its sites. For Nitsche's method.
-    fn traction(&self, _state: &BodyState, _site: &Site) -> Option<Direction> {
-        None
-    }
-
-    /// The pressure per gap that makes Nitsche's method at a site stable.
-    fn stabilisation(&self, site: &Site) -> f64 {
-        self.site_stiffness(site) / site.weight
-    }
-
-    /// The points of a place spread evenly, at least a distance apart, with what they stand for, and the largest distance
-    /// between neighbours: for contact by discs.
-    ///
-    /// # Errors
-    /// A place that is not there, or a body without such points.
-    fn spread_sites(&self, _on: Option<&str>, _spacing: f64) -> Result<(Vec<Site>, f64), PlaceError> {
-        let message = "contact by discs is for bodies of finite cells only".to_string();
-        Err(PlaceError::Unsuitable { body: self.name().to_string(), message })
-    }
-
-    /// The six unit motions of the whole body in its unknowns, at a state (three translations, three turns about the
-    /// origin): for resultants and free motions.
-    fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6];
-
-    /// Whether the body has no stiffness of its own.
-    fn is_rigid(&self) -> bool {
-        false
-    }
-
+/// What contact may ask of the surface of a body, beyond points and a master.
+pub trait ContactSides {
     /// A place as a curve, if it is one, such as a rope, a beam, an edge of a solid: contact between curves is for such.
     fn curve<'a>(&'a self, _on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
         None
@@ -328,6 +322,39 @@ pub trait Body: Send + Sync {
         None
     }
 
+    /// The traction `σ n` at a site by the stress of the body, per area of the site, with what changes it; none of a body
+    /// whose stress is not known at its sites. For Nitsche's method.
+    fn traction(&self, _state: &BodyState, _site: &Site) -> Option<Direction> {
+        None
+    }
+
+    /// The pressure per gap that makes Nitsche's method at a site stable; none where [`traction`](ContactSides::traction) is none.
+    fn stabilisation(&self, _site: &Site) -> Option<f64> {
+        None
+    }
+
+    /// The points of a place spread evenly, at least a distance apart, with what they stand for, and the largest distance
+    /// between neighbours: for contact by discs. None of a body without such points.
+    ///
+    /// # Errors
+    /// A place that is not there.
+    fn spread_sites(&self, _on: Option<&str>, _spacing: f64) -> Result<Option<(Vec<Site>, f64)>, PlaceError> {
+        Ok(None)
+    }
+
+    /// Places on a surface without faces, and how far apart forces near each may act so that its functions follow them: as the
+    /// points of its own quadrature. None where that is not known.
+    fn points_apart(&self, _on: Option<&str>) -> Vec<(Point<3>, f64)> {
+        Vec::new()
+    }
+
+    /// Tests a place at points of quadrature at most as far apart as told for the points near them, from now on. Bodies whose
+    /// points cannot be more leave them.
+    fn test_at_least_every(&mut self, _on: Option<&str>, _apart: &dyn Fn(&Point<3>) -> f64) {}
+}
+
+/// A body that may hang without carrying anything.
+pub trait Slack {
     /// Whether no part of the body carries anything, nor would if it moved a little: a rope that is longer than its way.
     fn is_slack(&self, _state: &BodyState) -> bool {
         false
@@ -342,22 +369,10 @@ pub trait Body: Send + Sync {
     fn soften(&mut self, _share: f64) -> f64 {
         0.0
     }
+}
 
-    /// Whether what a support holds of the body changes with time.
-    fn holds_change(&self) -> bool {
-        false
-    }
-
-    /// Unknowns that are spins, by threes: of the sections of a beam, of a rigid body.
-    fn spins(&self) -> Vec<[u32; 3]> {
-        Vec::new()
-    }
-
-    /// The largest extent of the body: the scale of lengths.
-    fn size(&self) -> f64;
-
-    fn fields(&self, state: &BodyState) -> BodyFields;
-
+/// A body that fills a box, such as a piece of a material from an image.
+pub trait BoxOfMaterial {
     /// What a body in a box of cells is like in the middle of equal boxes that fill its own: none of other bodies.
     fn samples(&self, _state: &BodyState) -> Option<Samples> {
         None

@@ -106,7 +106,10 @@ impl Contact {
                     "Nitsche's method is for surfaces of finite cells and of solids of small strain".to_string();
                 return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
             }
-            sites.iter().map(|s| slave.1.stabilisation(s)).collect()
+            sites
+                .iter()
+                .map(|s| slave.1.stabilisation(s).unwrap_or_else(|| slave.1.site_stiffness(s) / s.weight))
+                .collect()
         } else {
             sites.iter().map(|s| slave.1.site_stiffness(s) / s.weight).collect()
         };

@@ -275,7 +275,8 @@ impl System {
 
     /// What is done while the trials of contacts that can be softer are; told whether there are any.
     pub(crate) fn with_scaled_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
-        let softer: Vec<bool> = self.contacts.iter_mut().map(|contact| contact.law_mut().scale_trials(SOFTER)).collect();
+        let softer: Vec<bool> =
+            self.contacts.iter_mut().map(|contact| contact.law_mut().scale_trials(SOFTER)).collect();
         let found = of(self, softer.contains(&true));
         self.contacts.iter_mut().for_each(|contact| _ = contact.law_mut().scale_trials(1.0 / SOFTER));
         found

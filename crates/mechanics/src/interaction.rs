@@ -11,12 +11,12 @@
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
+use crate::contact_law::ContactLaw;
 use crate::inside::{self, Inside};
 use crate::part::Part;
 use crate::points::SlavePoint;
 use crate::shown_surface::ShownSurface;
 use crate::site_result::SiteResult;
-use crate::contact_law::ContactLaw;
 use signorini_contact::{Law, Status};
 use signorini_solve::general::Entries;
 
@@ -104,7 +104,12 @@ pub trait Interaction: Iterated + Passing + Drawn + Send + Sync {
     ///
     /// # Errors
     /// Bodies that cannot be tested or touched.
-    fn add_to(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>, out: &mut Assembler<'_>) -> Result<usize, PlaceError>;
+    fn add_to(
+        &self,
+        at: Bodies<'_>,
+        own: InteractionUnknowns<'_>,
+        out: &mut Assembler<'_>,
+    ) -> Result<usize, PlaceError>;
 
     /// The points that are tested as they are found in a state.
     ///

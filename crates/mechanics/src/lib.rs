@@ -59,7 +59,8 @@ pub mod surface;
 pub mod system;
 
 pub use body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Means, PlaceError, Samples,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Kinematics, Load, Means, PlaceError, Samples, Slack,
 };
 pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;

@@ -4,7 +4,10 @@
 //! three displacements of the centre and three spins, `R ← exp(θ) R`. Derivatives with respect to spins are the symmetric
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
-use crate::body::{Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
+use crate::body::{
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Kinematics, Load, PlaceError, Slack,
+};
 use crate::pair::{any_tangent, axis};
 use crate::points::{
     Anchor, Function, Master, MasterProjection, MaterialPoint, Order, RigidFoot, Sampling, SecondDerivative, Site,
@@ -162,15 +165,6 @@ impl Body for RigidBody {
         Pose { centre: self.centre, rotation: UnitQuaternion::identity(), turn: Vector::<3>::zeros() }.state()
     }
 
-    fn prescribe(&self, time: f64, state: &mut BodyState) {
-        if let Motion::Prescribed(motion) = &self.motion {
-            let motion = motion(time);
-            let rotation = Rotation3::from_matrix_unchecked(motion.rotation);
-            let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
-            *state = Pose { centre: motion.point(&self.centre), rotation, turn: motion.turn }.state();
-        }
-    }
-
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let pose = Pose::of(state);
         let mut parts = [0.0; 6];
@@ -182,12 +176,6 @@ impl Body for RigidBody {
         }
         let [displacement, spin] = [0, 3].map(|k| Vector::<3>::new(parts[k], parts[k + 1], parts[k + 2]));
         pose.moved(&displacement, &spin).state()
-    }
-
-    fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
-        let [from, to] = [from, to].map(Pose::of);
-        let turn = rotation::between(&from.turn, &to.turn);
-        from.moved(&((to.centre - from.centre) * share), &(turn * share)).state()
     }
 
     fn internal(&self, _: &BodyState, _: Order, _: &mut Contribution) -> Result<f64, BodyError> {
@@ -325,6 +313,31 @@ impl Body for RigidBody {
         })
     }
 
+    fn size(&self) -> f64 {
+        self.size
+    }
+
+    fn fields(&self, _: &BodyState) -> BodyFields {
+        BodyFields::default()
+    }
+}
+
+impl Kinematics for RigidBody {
+    fn prescribe(&self, time: f64, state: &mut BodyState) {
+        if let Motion::Prescribed(motion) = &self.motion {
+            let motion = motion(time);
+            let rotation = Rotation3::from_matrix_unchecked(motion.rotation);
+            let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
+            *state = Pose { centre: motion.point(&self.centre), rotation, turn: motion.turn }.state();
+        }
+    }
+
+    fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
+        let [from, to] = [from, to].map(Pose::of);
+        let turn = rotation::between(&from.turn, &to.turn);
+        from.moved(&((to.centre - from.centre) * share), &(turn * share)).state()
+    }
+
     fn is_rigid(&self) -> bool {
         true
     }
@@ -335,15 +348,15 @@ impl Body for RigidBody {
             _ => Vec::new(),
         }
     }
-
-    fn size(&self) -> f64 {
-        self.size
-    }
-
-    fn fields(&self, _: &BodyState) -> BodyFields {
-        BodyFields::default()
-    }
 }
+
+impl Elimination for RigidBody {}
+
+impl ContactSides for RigidBody {}
+
+impl Slack for RigidBody {}
+
+impl BoxOfMaterial for RigidBody {}
 
 struct RigidMaster<'a> {
     body: &'a RigidBody,

@@ -31,8 +31,8 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Curve, Direction, Hold, Load, Master, Order,
-    PlaceError, Sampling, Site, SlavePoint, Surface,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Curve, Direction,
+    Elimination, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint, Surface,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -256,19 +256,6 @@ impl<const D: usize> Body for SolidBody<D> {
         Ok(energy)
     }
 
-    fn cliques(&self) -> Vec<Vec<u32>> {
-        (0..self.mesh().cell_count()).map(|cell| self.unknowns_of(cell).0).collect()
-    }
-
-    fn places(&self) -> Vec<[f64; 3]> {
-        let positions = self.body().function_positions();
-        positions.iter().flat_map(|x| [spatial(x).into(); D]).collect()
-    }
-
-    fn is_linear(&self) -> bool {
-        self.law == StressLaw::LinearElastic
-    }
-
     /// Rows in the unknowns, one for each function on the place and component that is held. Components across the plane
     /// are never free.
     fn hold(&self, on: Option<&str>, hold: &Hold<'_>, state: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
@@ -316,16 +303,6 @@ impl<const D: usize> Body for SolidBody<D> {
         Ok(Box::new(master.map_err(|e| self.unsuitable(e.to_string()))?))
     }
 
-    fn surface<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Option<Box<dyn Surface + 'a>> {
-        let group = on.unwrap_or("boundary");
-        let has_sides = self.groups.get(group).is_some_and(|g| !g.sides.is_empty());
-        has_sides.then(|| Box::new(self.placed_surface(group, &state.configuration)) as _)
-    }
-
-    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
-        Some(Box::new(self.edge(on?)?))
-    }
-
     /// Young's modulus times the area of the site over the depth of its cell, in parts of its degree; of an edge times the
     /// length of the site.
     fn site_stiffness(&self, site: &Site) -> f64 {
@@ -334,15 +311,6 @@ impl<const D: usize> Body for SolidBody<D> {
         }
         let body = self.body();
         body.material.youngs_modulus * site.weight * body.degree as f64 / self.faces.depth(site)
-    }
-
-    fn traction(&self, state: &BodyState, site: &Site) -> Option<Direction> {
-        self.traction_at(state, site)
-    }
-
-    /// `E p²/h`.
-    fn stabilisation(&self, site: &Site) -> f64 {
-        self.body().degree as f64 * self.site_stiffness(site) / site.weight
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
@@ -375,6 +343,48 @@ impl<const D: usize> Body for SolidBody<D> {
         self.shown(&state.configuration)
     }
 }
+
+impl<const D: usize> Kinematics for SolidBody<D> {}
+
+impl<const D: usize> Elimination for SolidBody<D> {
+    fn cliques(&self) -> Vec<Vec<u32>> {
+        (0..self.mesh().cell_count()).map(|cell| self.unknowns_of(cell).0).collect()
+    }
+
+    fn places(&self) -> Vec<[f64; 3]> {
+        let positions = self.body().function_positions();
+        positions.iter().flat_map(|x| [spatial(x).into(); D]).collect()
+    }
+
+    fn is_linear(&self) -> bool {
+        self.law == StressLaw::LinearElastic
+    }
+}
+
+impl<const D: usize> ContactSides for SolidBody<D> {
+    fn surface<'a>(&'a self, on: Option<&str>, state: &'a BodyState) -> Option<Box<dyn Surface + 'a>> {
+        let group = on.unwrap_or("boundary");
+        let has_sides = self.groups.get(group).is_some_and(|g| !g.sides.is_empty());
+        has_sides.then(|| Box::new(self.placed_surface(group, &state.configuration)) as _)
+    }
+
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        Some(Box::new(self.edge(on?)?))
+    }
+
+    fn traction(&self, state: &BodyState, site: &Site) -> Option<Direction> {
+        self.traction_at(state, site)
+    }
+
+    /// `E p²/h`.
+    fn stabilisation(&self, site: &Site) -> Option<f64> {
+        Some(self.body().degree as f64 * self.site_stiffness(site) / site.weight)
+    }
+}
+
+impl<const D: usize> Slack for SolidBody<D> {}
+
+impl<const D: usize> BoxOfMaterial for SolidBody<D> {}
 
 /// How far into a cell the force on a side of it reaches: its volume over the area of the side.
 fn depth<const D: usize>(bodies: &Bodies<D>, side: signorini_fem::Side) -> f64 {

@@ -4,11 +4,12 @@ use super::partners::Partners;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
+use crate::contact_law::ContactLaw;
 use crate::enforcement::{SOFTER, WAVE};
 use crate::inside::Inside;
-use crate::contact_law::ContactLaw;
 use crate::interaction::{
-    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing, StatePath,
+    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing,
+    StatePath,
 };
 use crate::pair::Stuck;
 use crate::part::Part;

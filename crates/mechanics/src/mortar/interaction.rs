@@ -8,11 +8,12 @@ use super::small::{AtRest, SmallSliding};
 use super::terms::{Assembly, FaceTerms, NodeTractions, Wanted};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
+use crate::contact_law::ContactLaw;
 use crate::enforcement::WAVE;
 use crate::inside::Inside;
-use crate::contact_law::ContactLaw;
 use crate::interaction::{
-    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing, StatePath,
+    Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing,
+    StatePath,
 };
 use crate::pair::{AxisChoice, any_tangent};
 use crate::part::Part;
@@ -21,8 +22,8 @@ use crate::points::{MaterialPoint, SlavePoint};
 use crate::shown_surface::ShownSurface;
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
-use signorini_contact::law::Projected;
 use signorini_contact::Status;
+use signorini_contact::law::Projected;
 use signorini_geometry::Vector;
 use std::sync::Arc;
 

@@ -27,8 +27,15 @@ impl Mortar {
         }
         let since = self.small.iter().flat_map(|small| &small.since);
         let since: Vec<f64> = since.flat_map(|u| std::iter::once(u.len() as f64).chain(u.iter().copied())).collect();
-        let scales =
-            self.law.stiffness.iter().chain(&[self.law.times[0]]).chain(self.turned.iter()).chain(&since).copied().collect();
+        let scales = self
+            .law
+            .stiffness
+            .iter()
+            .chain(&[self.law.times[0]])
+            .chain(self.turned.iter())
+            .chain(&since)
+            .copied()
+            .collect();
         [own, scales]
     }
 

@@ -87,16 +87,20 @@ impl Body for Sheet {
     fn name(&self) -> &str {
         &self.name
     }
+
     fn unknowns(&self) -> usize {
         3 * self.count()
     }
+
     fn start(&self) -> BodyState {
         BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
     }
+
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
         BodyState { configuration, internal: Vec::new() }
     }
+
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         for (k, u) in state.configuration.iter().enumerate() {
             out.forces[k] += self.foundation * u;
@@ -106,9 +110,11 @@ impl Body for Sheet {
         }
         Ok(0.5 * self.foundation * state.configuration.iter().map(|u| u * u).sum::<f64>())
     }
+
     fn hold(&self, _: Option<&str>, _: &Hold<'_>, _: &BodyState) -> Result<Vec<Constraint>, PlaceError> {
         Ok(Vec::new())
     }
+
     fn load(
         &self,
         _: Option<&str>,
@@ -119,10 +125,12 @@ impl Body for Sheet {
     ) -> Result<(), PlaceError> {
         Ok(())
     }
+
     fn sites(&self, _: Option<&str>, _: Sampling) -> Result<Vec<Site>, PlaceError> {
         let list = [[0.3, 0.4], [0.6, 0.55], [0.45, 0.2]];
         Ok(list.iter().map(|xi| Site { patch: 0, xi: *xi, weight: 0.7 }).collect())
     }
+
     fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
         let jet = self.jet(state, site.xi);
         let normal = jet.u.cross(&jet.v);
@@ -136,22 +144,37 @@ impl Body for Sheet {
             ..SlavePoint::default()
         }
     }
+
     fn master<'a>(&'a self, _: Option<&str>, state: &'a BodyState) -> Result<Box<dyn Master + 'a>, PlaceError> {
         Ok(Box::new(SheetMaster { sheet: self, state }))
     }
+
     fn site_stiffness(&self, _: &Site) -> f64 {
         self.foundation
     }
+
     fn rigid_modes(&self, _: &BodyState) -> [Vec<f64>; 6] {
         std::array::from_fn(|_| vec![0.0; self.unknowns()])
     }
+
     fn size(&self) -> f64 {
         1.0
     }
+
     fn fields(&self, _: &BodyState) -> BodyFields {
         BodyFields::default()
     }
 }
+
+impl Kinematics for Sheet {}
+
+impl Elimination for Sheet {}
+
+impl ContactSides for Sheet {}
+
+impl Slack for Sheet {}
+
+impl BoxOfMaterial for Sheet {}
 
 struct SheetMaster<'a> {
     sheet: &'a Sheet,

@@ -14,8 +14,8 @@ use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
-    Sampling, Site, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination,
+    Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// Numbers of a node in a configuration, and unknowns.
@@ -337,17 +337,6 @@ impl Body for Beam {
         Ok(())
     }
 
-    fn spins(&self) -> Vec<[u32; 3]> {
-        let three = |first: usize| [first as u32, first as u32 + 1, first as u32 + 2];
-        let nodes = self.line.nodes();
-        let of_nodes = (0..nodes).map(|n| three(NODE * n + 6));
-        of_nodes.chain((0..self.elements.len()).map(|e| three(NODE * nodes + 3 * e))).collect()
-    }
-
-    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
-        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
-    }
-
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
         curve_body::sites(self, on, sampling)
     }
@@ -365,10 +354,6 @@ impl Body for Beam {
         let element = &self.elements[site.patch as usize];
         let bending = element.stiffness.bending[0].min(element.stiffness.bending[1]);
         192.0 * bending / element.length.powi(3)
-    }
-
-    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
-        curve_body::curve(self, on)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
@@ -402,3 +387,28 @@ impl Body for Beam {
         fields
     }
 }
+
+impl Kinematics for Beam {
+    fn spins(&self) -> Vec<[u32; 3]> {
+        let three = |first: usize| [first as u32, first as u32 + 1, first as u32 + 2];
+        let nodes = self.line.nodes();
+        let of_nodes = (0..nodes).map(|n| three(NODE * n + 6));
+        of_nodes.chain((0..self.elements.len()).map(|e| three(NODE * nodes + 3 * e))).collect()
+    }
+
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
+    }
+}
+
+impl Elimination for Beam {}
+
+impl ContactSides for Beam {
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        curve_body::curve(self, on)
+    }
+}
+
+impl Slack for Beam {}
+
+impl BoxOfMaterial for Beam {}

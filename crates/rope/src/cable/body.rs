@@ -15,8 +15,8 @@ use crate::quaternion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Hold, Load, Master, Order, PlaceError, Sampling,
-    Site, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A cable that cannot be.
@@ -156,23 +156,6 @@ impl CurveBody for Cable {
 }
 
 impl Body for Cable {
-    fn is_slack(&self, state: &BodyState) -> bool {
-        let is_slack = |(e, own): (usize, &Element)| own.is_slack(&self.line.nodal(&state.configuration, e));
-        self.elements.iter().enumerate().all(is_slack)
-    }
-
-    fn add_sag_spring(&mut self, force: f64) {
-        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
-        self.elements.iter_mut().filter(is_cable).for_each(|e| e.tightened = force);
-    }
-
-    fn soften(&mut self, share: f64) -> f64 {
-        let axial = share * self.stiffness;
-        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
-        let softened = self.elements.iter_mut().filter(is_cable).map(|e| e.axial = axial).count();
-        if softened > 0 { self.stiffness } else { 0.0 }
-    }
-
     fn name(&self) -> &str {
         &self.name
     }
@@ -256,10 +239,6 @@ impl Body for Cable {
         self.line_of(state).load(&place::part(&self.name, &self.line, on)?, load, order, out)
     }
 
-    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
-        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
-    }
-
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
         curve_body::sites(self, on, sampling)
     }
@@ -278,10 +257,6 @@ impl Body for Cable {
             Carries::TensionOnly => element.axial / element.length,
             Carries::TensionAndCompression => 192.0 * element.bending / element.length.powi(3),
         }
-    }
-
-    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
-        curve_body::curve(self, on)
     }
 
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
@@ -305,3 +280,38 @@ impl Body for Cable {
         fields
     }
 }
+
+impl Kinematics for Cable {
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
+    }
+}
+
+impl Elimination for Cable {}
+
+impl ContactSides for Cable {
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        curve_body::curve(self, on)
+    }
+}
+
+impl Slack for Cable {
+    fn is_slack(&self, state: &BodyState) -> bool {
+        let is_slack = |(e, own): (usize, &Element)| own.is_slack(&self.line.nodal(&state.configuration, e));
+        self.elements.iter().enumerate().all(is_slack)
+    }
+
+    fn add_sag_spring(&mut self, force: f64) {
+        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
+        self.elements.iter_mut().filter(is_cable).for_each(|e| e.tightened = force);
+    }
+
+    fn soften(&mut self, share: f64) -> f64 {
+        let axial = share * self.stiffness;
+        let is_cable = |e: &&mut Element| e.carries == Carries::TensionOnly;
+        let softened = self.elements.iter_mut().filter(is_cable).map(|e| e.axial = axial).count();
+        if softened > 0 { self.stiffness } else { 0.0 }
+    }
+}
+
+impl BoxOfMaterial for Cable {}

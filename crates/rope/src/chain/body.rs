@@ -17,8 +17,8 @@ use crate::quaternion::axis;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, Constraint, Contribution, Function, Hold, Load, Master, Order, PlaceError,
-    Sampling, Site, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination,
+    Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A rope that cannot be.
@@ -314,20 +314,6 @@ impl CurveBody for Chain {
 pub(crate) const LONGER: f64 = 1e-9;
 
 impl Body for Chain {
-    fn is_slack(&self, state: &BodyState) -> bool {
-        let is_long = |e: usize| self.element(state, e).0.norm() < (1.0 - LONGER) * self.unstrained_length(state, e);
-        self.active(state).all(|e| self.drives[e] == Drive::Elastic && is_long(e))
-    }
-
-    fn add_sag_spring(&mut self, force: f64) {
-        self.tightened = force;
-    }
-
-    fn soften(&mut self, share: f64) -> f64 {
-        self.softened = share;
-        self.stiffness
-    }
-
     fn name(&self) -> &str {
         &self.name
     }
@@ -339,14 +325,6 @@ impl Body for Chain {
     fn start(&self) -> BodyState {
         let internal = self.winch.iter().map(|_| 0.0).collect();
         BodyState { configuration: self.start.clone(), internal }
-    }
-
-    fn prescribe(&self, time: f64, state: &mut BodyState) {
-        self.wind(time, state);
-    }
-
-    fn holds_change(&self) -> bool {
-        self.winch.is_some()
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
@@ -445,10 +423,6 @@ impl Body for Chain {
         self.line_of(state).load(&self.part(on)?, load, order, out)
     }
 
-    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
-        place::point(&self.line, &self.start, &self.part(on).ok()?)
-    }
-
     fn sites(&self, on: Option<&str>, sampling: Sampling) -> Result<Vec<Site>, PlaceError> {
         curve_body::sites(self, on, sampling)
     }
@@ -472,10 +446,6 @@ impl Body for Chain {
         self.stiffness / self.line.lengths[site.patch as usize]
     }
 
-    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
-        curve_body::curve(self, on)
-    }
-
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
         self.line_of(state).rigid_modes(self.unknowns())
     }
@@ -496,3 +466,43 @@ impl Body for Chain {
         fields
     }
 }
+
+impl Kinematics for Chain {
+    fn prescribe(&self, time: f64, state: &mut BodyState) {
+        self.wind(time, state);
+    }
+
+    fn holds_change(&self) -> bool {
+        self.winch.is_some()
+    }
+
+    fn point(&self, on: Option<&str>) -> Option<Point<3>> {
+        place::point(&self.line, &self.start, &self.part(on).ok()?)
+    }
+}
+
+impl Elimination for Chain {}
+
+impl ContactSides for Chain {
+    fn curve<'a>(&'a self, on: Option<&str>) -> Option<Box<dyn Curve + 'a>> {
+        curve_body::curve(self, on)
+    }
+}
+
+impl Slack for Chain {
+    fn is_slack(&self, state: &BodyState) -> bool {
+        let is_long = |e: usize| self.element(state, e).0.norm() < (1.0 - LONGER) * self.unstrained_length(state, e);
+        self.active(state).all(|e| self.drives[e] == Drive::Elastic && is_long(e))
+    }
+
+    fn add_sag_spring(&mut self, force: f64) {
+        self.tightened = force;
+    }
+
+    fn soften(&mut self, share: f64) -> f64 {
+        self.softened = share;
+        self.stiffness
+    }
+}
+
+impl BoxOfMaterial for Chain {}

@@ -179,7 +179,8 @@ impl CurveContact {
         };
         // One after the other.
         let point = 1.0 / (1.0 / mean(0) + 1.0 / mean(1));
-        self.penalties = self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0], self.law.enforcement) });
+        self.penalties =
+            self.stated.unwrap_or(Penalties { point, line: point / spacing(curves[0], self.law.enforcement) });
     }
 
     /// Whether a point is an end of its curve.

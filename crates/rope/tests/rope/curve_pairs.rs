@@ -5,6 +5,7 @@ use crate::common::bodies::{beam, cable};
 use signorini_contact::Coulomb;
 use signorini_contact::law::Status;
 use signorini_geometry::Vector;
+use signorini_mechanics::ContactSides;
 use signorini_mechanics::body::{Body, BodyState, Order};
 use signorini_mechanics::interaction::{Bodies, Interaction, InteractionUnknowns};
 use signorini_mechanics::{Curve, Enforcement};

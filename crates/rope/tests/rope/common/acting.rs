@@ -4,7 +4,7 @@ use signorini_contact::law::Status;
 use signorini_contact::{Coulomb, Law};
 use signorini_geometry::Vector;
 use signorini_mechanics::body::{Body, BodyState, Order};
-use signorini_mechanics::interaction::{Assembler, Bodies, Interaction, Iterated, InteractionUnknowns};
+use signorini_mechanics::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns, Iterated};
 use signorini_mechanics::{Enforcement, SiteResult};
 use signorini_rope::curve_pair::contact::CurveContact;
 use signorini_solve::general::Entries;

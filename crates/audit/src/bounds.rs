@@ -11,8 +11,9 @@
 //! direction the axes are not told: its ellipse is taken for the circle around it, and bounds may be wider than they are.
 
 use crate::groups::{Group, groups, touching};
+use crate::place::Friction;
 use crate::state::{Setting, Space, State};
-use crate::statics::{Friction, Independent, Statics};
+use crate::statics::{Independent, Statics};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 

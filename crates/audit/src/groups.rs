@@ -1,7 +1,7 @@
 //! Free rigid bodies that hang together by contact: balance tells of their forces only together.
 
+use crate::place::Place;
 use crate::state::{Form, Setting, State, Touch};
-use crate::statics::Place;
 use signorini_geometry::Vector;
 
 /// Gap relative to the larger body below which places touch, though they carry nothing: rounding of their places over an

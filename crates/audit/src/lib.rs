@@ -25,6 +25,7 @@ pub mod jumps;
 pub mod nearest;
 pub mod obstacle;
 pub mod path;
+pub mod place;
 pub mod range;
 pub mod resolution;
 pub mod samples;

@@ -4,8 +4,9 @@
 use crate::bounds::ForceBounds;
 use crate::finding::{Check, Finding, Outcome};
 use crate::groups::{Group, carrying, groups, touching};
+use crate::place::Place;
 use crate::state::{Setting, State};
-use crate::statics::{Place, Statics};
+use crate::statics::Statics;
 
 /// Places of a group beyond which equations are counted only, whether they are the same or not: to tell takes the cube of it.
 const MOST: usize = 300;

@@ -3,65 +3,21 @@
 //! The stiffness is `∫_B α ε(u):C:ε(v)`, `α = 1` in the material and `α_0` in the rest of the cells (Parvizian, Düster &
 //! Rank, Comput. Mech. 41, 2007). Cells without material are left out. Unknown `D f + k` is component `k` of function `f`.
 
+use crate::cell::{Cell, Findings, Site};
+use crate::check::check;
 use crate::components::{PieceGraph, faces_itself, is_narrow};
-use crate::discretisation::{Boundary, CellMaterial, Discretisation, check};
+use crate::discretisation::{Boundary, CellMaterial, Discretisation};
 use crate::error::CellsError;
+use crate::kept_pieces::{kept_pieces, rules_of_pieces};
 use crate::memory::check_memory;
-use crate::moments::VolumePoints;
-use crate::numbering::{kept_pieces, rules_of_pieces};
+use crate::moments::{VolumePoints, box_points};
 use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
-use crate::space::{LocalMode, Mode, Tabulation, tabulate};
+use crate::space::{Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
 use rayon::prelude::*;
 use signorini_fem::elastic::{Elastic, Space};
-use signorini_geometry::{Aabb, Point, Vector};
+use signorini_geometry::{Aabb, Point};
 use std::sync::Arc;
-
-/// A function of position.
-pub type Field<const D: usize> = Arc<dyn Fn(&Point<D>) -> f64 + Send + Sync>;
-
-/// A cell with material: a leaf, or one piece of the material in it.
-#[derive(Clone, Debug)]
-pub struct Cell<const D: usize> {
-    /// Number of the leaf in the tree.
-    pub leaf: usize,
-    pub modes: Vec<LocalMode<D>>,
-    /// Number of each of its functions in the body.
-    pub functions: Vec<u32>,
-    pub rule: MaterialRule<D>,
-    /// Share of the material in the leaf.
-    pub share: f64,
-    /// The cell whose polynomials give the stress on the boundary in this one: itself, or a neighbour with more material
-    /// where this one holds so little that its own stress is not controlled by its energy.
-    pub stress_cell: usize,
-}
-
-/// A point of the recovered boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site<const D: usize> {
-    /// Number of the cell.
-    pub cell: usize,
-    pub x: Point<D>,
-    /// Length or area before the body deforms; around an axis, of the whole turn.
-    pub weight: f64,
-    /// Unit normal, out of the material.
-    pub normal: Vector<D>,
-}
-
-/// What was found out about the body while it was made.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Findings {
-    /// Cells in which the boundary faces itself: features as narrow as a cell.
-    pub facing_cells: usize,
-    /// Leaves whose material is in several pieces with unknowns of their own.
-    pub split_leaves: usize,
-    /// Functions that are copies of another one, for pieces of material that do not touch in its support.
-    pub copies: usize,
-    /// Volumes of pieces of the body that do not hang together, the largest first.
-    pub parts: Vec<f64>,
-    /// Volume of the pieces that were dropped.
-    pub dropped: f64,
-}
 
 /// A body of finite cells.
 #[derive(Clone)]
@@ -305,22 +261,4 @@ impl<const D: usize> CellBody<D> {
         let varies = self.material.modulus.is_some() || self.material.space == Space::Axisymmetric;
         self.degree() + if varies { 3 } else { 1 }
     }
-}
-
-/// The tensor-product Gauss rule of a box.
-#[doc(hidden)]
-pub fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Point<D>, f64)> {
-    let gauss = signorini_geometry::rule::gauss_legendre(order);
-    (0..order.pow(D as u32))
-        .map(|mut i| {
-            let mut weight = b.volume();
-            let x = b.at(&Point::from_fn(|_, _| {
-                let (t, w) = gauss[i % order];
-                i /= order;
-                weight *= w;
-                t
-            }));
-            (x, weight)
-        })
-        .collect()
 }

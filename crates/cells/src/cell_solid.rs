@@ -19,7 +19,8 @@ mod shown;
 mod surface;
 mod weak;
 
-use crate::body::{CellBody, Site};
+use crate::body::CellBody;
+use crate::cell::Site;
 use crate::error::CellsError;
 use crate::place::Place;
 use crate::region::Filling;

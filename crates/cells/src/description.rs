@@ -5,7 +5,8 @@
 
 mod shape;
 
-use crate::body::{CellBody, Findings};
+use crate::body::CellBody;
+use crate::cell::Findings;
 use crate::cell_solid::CellSolid;
 use crate::components::Pieces;
 use crate::discretisation::{Boundary, CellMaterial, Discretisation, Islands};
@@ -231,7 +232,7 @@ fn flat<const D: usize>(x: &Point<3>) -> Point<D> {
     Point::<D>::from_fn(|k, _| x[k])
 }
 
-fn in_body<const D: usize>(factor: Scalar, most: f64) -> (crate::body::Field<D>, f64) {
+fn in_body<const D: usize>(factor: Scalar, most: f64) -> (crate::cell::Field<D>, f64) {
     (Arc::new(move |x: &Point<D>| factor(&spatial(x))), most)
 }
 

@@ -18,7 +18,9 @@
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
+pub mod cell;
 pub mod cell_solid;
+mod check;
 pub mod components;
 pub mod description;
 pub mod disc_contact;
@@ -29,6 +31,7 @@ pub mod fields;
 mod hierarchy;
 pub mod image;
 pub mod jets;
+mod kept_pieces;
 pub mod legendre;
 mod memory;
 pub mod moments;
@@ -45,7 +48,8 @@ mod tensor_integrals;
 pub mod tree;
 pub mod voxels;
 
-pub use body::{Cell, CellBody, Field, Findings, Site};
+pub use body::CellBody;
+pub use cell::{Cell, Field, Findings, Site};
 pub use cell_solid::CellSolid;
 pub use components::Pieces;
 pub use discretisation::{Boundary, CellMaterial, Discretisation, Islands};

@@ -1,11 +1,10 @@
 //! About how much memory a body of cells takes with its equations, before it is made: from a sample of its cells.
 
-use crate::body::Cell;
+use crate::cell::{Cell, SMALL};
 use crate::discretisation::{Discretisation, check_values};
 use crate::error::CellsError;
 use crate::moments::VolumePoints;
 use crate::region::{BoundaryPoint, Filling, Region};
-use crate::schwarz::SMALL;
 use crate::space::{LocalMode, Mode, modes_of};
 use crate::tree::{CellTree, Leaf};
 use rayon::prelude::*;

@@ -4,7 +4,6 @@
 //! Oberlack, Int. J. Numer. Methods Eng. 96, 2013). Weights may be negative. What is a factor of the given weights, such as
 //! a modulus in every voxel, is integrated as exactly as the given points do.
 
-use crate::body::box_points;
 use signorini_fem::QuadraturePoint;
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point};
@@ -52,4 +51,22 @@ pub fn fitted<const D: usize>(
         }
     }
     (box_points(b, order).into_iter().zip(weights)).map(|((x, _), weight)| QuadraturePoint { x, weight }).collect()
+}
+
+/// The tensor-product Gauss rule of a box.
+#[doc(hidden)]
+pub fn box_points<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<(Point<D>, f64)> {
+    let gauss = signorini_geometry::rule::gauss_legendre(order);
+    (0..order.pow(D as u32))
+        .map(|mut i| {
+            let mut weight = b.volume();
+            let x = b.at(&Point::from_fn(|_, _| {
+                let (t, w) = gauss[i % order];
+                i /= order;
+                weight *= w;
+                t
+            }));
+            (x, weight)
+        })
+        .collect()
 }

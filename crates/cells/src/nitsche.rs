@@ -4,7 +4,8 @@
 //! cell. A cell with little material does not control its own stress: the polynomials of a neighbour with more of it, carried
 //! on to this cell, give `t` there, so that `γ` stays bounded however small the cut.
 
-use crate::body::{CellBody, Site};
+use crate::body::CellBody;
+use crate::cell::Site;
 use crate::space::Tabulation;
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;

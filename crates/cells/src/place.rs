@@ -3,7 +3,8 @@
 //! Their points are those of the rule of each cell, or of the rules of the boxes into which a cell is divided: where what
 //! touches them varies over less than the cell.
 
-use crate::body::{CellBody, Site};
+use crate::body::CellBody;
+use crate::cell::Site;
 use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling};
 use signorini_fem::QuadraturePoint;

@@ -7,12 +7,10 @@
 //! cuts, are the larger part of the trouble.
 
 use crate::body::CellBody;
+use crate::cell::SMALL;
 use crate::region::Filling;
 use crate::shapes::spatial;
 use signorini_solve::schwarz::Sets;
-
-/// Share of material in a cell above which its functions are independent enough for the stars of its vertices alone.
-pub(crate) const SMALL: f64 = 0.5;
 
 impl<const D: usize> CellBody<D> {
     /// The sets of unknowns of a preconditioner.

@@ -1,6 +1,6 @@
 //! Points of a boundary spread evenly: where contact is tested, and what discs stand for.
 
-use crate::body::Site;
+use crate::cell::Site;
 use signorini_geometry::Point;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};

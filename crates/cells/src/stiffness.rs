@@ -9,7 +9,9 @@
 //! matrices computed beforehand for each of them, `Σ_v E_v K_v`, for the weights of points in place of the entries of
 //! matrices.
 
-use crate::body::{Cell, CellBody, box_points};
+use crate::body::CellBody;
+use crate::cell::Cell;
+use crate::moments::box_points;
 use crate::moments::fitted;
 use crate::region::Filling;
 use crate::space::Tabulation;

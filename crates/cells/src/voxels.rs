@@ -139,7 +139,7 @@ impl<const D: usize> ModulusImage<D> {
     }
 
     /// The factor of the modulus in space, with its largest value, for [`crate::CellMaterial::modulus`].
-    pub fn modulus(&self) -> (crate::body::Field<D>, f64) {
+    pub fn modulus(&self) -> (crate::cell::Field<D>, f64) {
         let most = self.voxels.values.iter().fold(0.0f64, |m, v| m.max(*v));
         let voxels = self.voxels.clone();
         (Arc::new(move |x: &Point<D>| voxels.values[voxels.voxel_at(x)]), most)
@@ -183,7 +183,7 @@ impl<const D: usize> Region<D> for ModulusImage<D> {
     fn rule(&self, b: &Aabb<D>, _: &Integration, degree: usize) -> MaterialRule<D> {
         let mut volume = Vec::new();
         for part in self.divided(b).iter().filter(|p| self.value(&p.center()) > 0.0) {
-            let points = crate::body::box_points(part, degree + 1);
+            let points = crate::moments::box_points(part, degree + 1);
             volume.extend(points.into_iter().map(|(x, weight)| QuadraturePoint { x, weight }));
         }
         let filling = if volume.is_empty() { Filling::Void } else { Filling::Cut };

@@ -1,6 +1,6 @@
 //! Faces as the polynomials that they are: through points on them, so that a place is found without the cell behind it.
 
-use crate::surface::FacePoint;
+use crate::face_point::FacePoint;
 use signorini_basis::cell_map::CellMap;
 use signorini_basis::hierarchic::Values;
 use signorini_basis::{CellShape, Local};

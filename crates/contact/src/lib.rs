@@ -12,6 +12,7 @@
 //! pressure is positive.
 
 mod face_maps;
+mod face_point;
 pub mod law;
 pub mod mortar;
 pub mod multiplier;
@@ -23,11 +24,12 @@ mod testing;
 pub mod zone;
 
 pub use face_maps::FaceMaps;
+pub use face_point::FacePoint;
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{DualWeights, compress, dual_weights_unmerged, shares, weightless};
 pub use multiplier::{MergedNode, PressureNodes};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, pieces, segments, whole_faces};
 pub use signorini_geometry::rigid_shape::GapJet;
-pub use surface::{ContactSurface, FacePoint, Moved, ShapeFunction, is_facing};
+pub use surface::{ContactSurface, Moved, ShapeFunction, is_facing};
 pub use zone::{ContactZone, NodeState, connected, zone};

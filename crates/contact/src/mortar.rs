@@ -6,9 +6,10 @@
 //! quadratic triangles have no weight of their own and take a share of their neighbours (Popp, Wohlmuth, Gee & Wall
 //! 2012). A node that is hardly covered gives its function to a neighbour.
 
+use crate::face_point::FacePoint;
 use crate::multiplier::{MergedNode, PressureNodes};
 use crate::segments::GapPoint;
-use crate::surface::{ContactSurface, FacePoint};
+use crate::surface::ContactSurface;
 use nalgebra::DMatrix;
 use signorini_basis::CellShape;
 use signorini_basis::cell_map::CellMap;

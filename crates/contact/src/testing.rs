@@ -1,6 +1,7 @@
 //! A polyline as a surface of the plane, for unit tests.
 
-use crate::surface::{ContactSurface, FacePoint, ShapeFunction};
+use crate::face_point::FacePoint;
+use crate::surface::{ContactSurface, ShapeFunction};
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
 

@@ -1,8 +1,8 @@
 //! Which cells of a plane mesh share sides.
 
+use crate::cell_parts::{PARTS, between_parts};
 use crate::lists::Lists;
 use crate::mesh::{Mesh, Side};
-use crate::mesh_refinement::{PARTS, between_parts};
 
 /// The side of another cell that each side of each cell lies on.
 #[derive(Clone, Debug)]

@@ -1,21 +1,16 @@
 //! What a membrane is computed on: cells with functions, of which a boundary or a front may cut any.
 
+pub use crate::boundary_side::BoundarySide;
 use crate::cut::{CellPartition, CellRule, QuadraturePoint, cut_cell};
 use crate::grid::Grid;
 use crate::lagrange::{MAX_DEGREE, Tabulation};
 use crate::mesh_cells::MeshCells;
 use crate::reference::CellShape;
-use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 use std::sync::Arc;
 
 /// Cells along the longer side of the coarsest grid.
 const COARSEST: usize = 8;
-
-/// Gauss points per direction in cells that are not cut.
-pub(crate) fn whole_order(degree: usize) -> usize {
-    degree + 3
-}
 
 /// Two cells that share a side, or part of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +20,6 @@ pub struct Neighbours {
     pub width: f64,
     /// Pairs of one kind differ in their place only.
     pub kind: Option<usize>,
-}
-
-/// A side of a cell on the boundary of a domain that the cells fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoundarySide {
-    pub cell: usize,
-    /// Number of the side within its cell.
-    pub side: usize,
-    /// The piece of the boundary.
-    pub piece: usize,
 }
 
 /// A point of a side.
@@ -296,23 +281,6 @@ pub(crate) fn divided_box<const D: usize>(b: &Aabb<D>, n: usize) -> Divided<D> {
 pub(crate) fn quadrilaterals(n: usize) -> Vec<Vec<usize>> {
     let corner = |i: usize| i / n * (n + 1) + i % n;
     (0..n * n).map(|i| [0, 1, n + 2, n + 1].map(|o| corner(i) + o).to_vec()).collect()
-}
-
-/// The tensor-product Gauss rule of a box.
-pub(crate) fn box_rule<const D: usize>(b: &Aabb<D>, order: usize) -> Vec<QuadraturePoint<D>> {
-    let gauss = gauss_legendre(order);
-    (0..order.pow(D as u32))
-        .map(|mut i| {
-            let mut weight = b.volume();
-            let x = Point::from_fn(|_, _| {
-                let (x, w) = gauss[i % order];
-                i /= order;
-                weight *= w;
-                x
-            });
-            QuadraturePoint { x: b.at(&x), weight }
-        })
-        .collect()
 }
 
 /// A point of a side of a box: lower and upper in each direction.

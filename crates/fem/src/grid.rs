@@ -1,8 +1,8 @@
 //! Uniform background grids with the nodes of a tensor-product basis.
 
-use crate::cells::{box_rule, whole_order};
 use crate::cut::QuadraturePoint;
 use crate::lagrange::TensorBasis;
+use crate::whole_rule::{box_rule, whole_order};
 use signorini_geometry::{Aabb, Point};
 use std::sync::Arc;
 

@@ -14,6 +14,8 @@
 
 pub mod adjacency;
 pub mod block;
+mod boundary_side;
+pub mod cell_parts;
 pub mod cells;
 pub mod cells_part;
 pub mod cut;
@@ -31,6 +33,7 @@ pub mod mesh_refinement;
 pub mod overlap;
 pub mod pieces;
 pub mod refined_grid;
+mod whole_rule;
 
 pub use cells::{CellByCell, Cells};
 pub use cells_part::CellsPart;

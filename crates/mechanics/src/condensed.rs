@@ -13,6 +13,7 @@
 
 use crate::body::Contribution;
 use crate::eliminated::eliminated_step;
+use crate::linear_bodies::Reduced;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::points::{Order, Sampling};
 use crate::system::{Assembled, AssemblyError, System, SystemState, TimedLoad};
@@ -21,7 +22,6 @@ use signorini_solve::cholesky::Symbolic;
 use signorini_solve::dense::Equilibrated;
 use signorini_solve::{Condensation, SolveError, SymmetricMatrix};
 use std::collections::BTreeSet;
-use std::sync::{Mutex, OnceLock};
 
 /// Fewer unknowns of linear bodies are factorised with all others: that takes milliseconds.
 const LEAST: usize = 1000;
@@ -40,28 +40,6 @@ const REFUSED: f64 = 1e-9;
 /// A pivot relative to the largest that rounding leaves of zero.
 const SINGULAR: f64 = 1e-15;
 const ELSEWHERE: u32 = u32::MAX;
-
-/// What a system keeps of its linear bodies.
-#[derive(Default)]
-pub struct LinearBodies {
-    is_condensed: OnceLock<Vec<bool>>,
-    reduced: Mutex<Option<Reduced>>,
-}
-
-/// The linear bodies of a system.
-struct Reduced {
-    /// The number of each unknown of the system among those of linear bodies, and back.
-    place: Vec<u32>,
-    unknowns: Vec<u32>,
-    /// Without supports that prescribe unknowns.
-    stiffness: SymmetricMatrix,
-    row_sizes: Vec<f64>,
-    positions: Vec<[f64; 3]>,
-    /// What may touch: where, and the unknowns that move it.
-    sites: Vec<(Point<3>, Vec<u32>)>,
-    is_held: Vec<bool>,
-    condensation: Option<Condensation>,
-}
 
 impl System {
     /// Which bodies are condensed; none of a system in which others are solved for in another way or too few are linear.

@@ -22,14 +22,16 @@
 //! The slip counts from where the sides had a common point at the last state, or would have had if they had touched.
 
 mod assembly;
+mod axes;
 mod interaction;
+mod partner;
 mod partners;
 mod redistribution;
 mod state;
 mod traction;
 
 pub use crate::part::Part;
-pub use partners::Pairing;
+pub use partner::Pairing;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact_law::ContactLaw;
@@ -37,9 +39,9 @@ use crate::enforcement::Enforcement;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Anchor, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
-use partners::Partners;
+pub(crate) use axes::axes;
+use partner::Partners;
 use signorini_geometry::Vector;
-pub(crate) use traction::axes;
 
 /// Two sides that may touch.
 pub struct Contact {

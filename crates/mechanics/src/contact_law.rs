@@ -7,8 +7,9 @@
 //! - trial `ζ = λ - s (λ - λ_0) + c (-g, e)`, traction `Π(ζ)` by the law;
 //! - the equation `(w/c) (Π(ζ) - λ) = 0`, for which `w` is an area (Alart & Curnier 1991).
 
+use crate::assembler::Assembler;
 use crate::enforcement::{Enforcement, Outer};
-use crate::interaction::{Assembler, OuterIteration, hardened, take_over, towards};
+use crate::outer::{OuterIteration, hardened, take_over, towards};
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use signorini_contact::law::{LawPoint, Projected, frictionless};

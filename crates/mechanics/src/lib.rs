@@ -18,6 +18,7 @@
 //!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
 
 mod admissible;
+mod assembler;
 mod augmentation;
 pub mod body;
 mod branch;
@@ -36,9 +37,11 @@ pub mod increment_error;
 mod inside;
 pub mod interaction;
 pub mod iterative;
+mod linear_bodies;
 pub mod linear_solver;
 pub mod mortar;
 mod nitsche;
+mod outer;
 pub mod pair;
 pub mod part;
 pub mod passage;
@@ -57,6 +60,7 @@ mod slack;
 pub mod stability;
 pub mod surface;
 pub mod system;
+mod unstable;
 
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,

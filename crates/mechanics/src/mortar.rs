@@ -18,11 +18,14 @@
 //! A rigid master is tested at the points of a rule on whole slave faces.
 
 mod across;
+mod at_rest;
 mod axes;
 mod cover;
+mod face_terms;
 mod facing;
 mod interaction;
 mod measure;
+mod measured;
 mod rigid;
 mod saved;
 mod shown;
@@ -35,12 +38,12 @@ use crate::enforcement::Enforcement;
 use crate::pair::AxisChoice;
 use crate::part::Part;
 use crate::surface::Local;
+use at_rest::SmallSliding;
 use cover::{Nodes, Search};
 use facing::Facing;
-use measure::{Matched, NodeMeasure};
+use measured::{Matched, NodeMeasure};
 use signorini_contact::law::Projected;
 use signorini_geometry::Vector;
-use small::SmallSliding;
 
 /// Contact of a surface of faces with another one, or with a rigid body.
 pub struct Mortar {

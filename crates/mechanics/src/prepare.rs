@@ -1,8 +1,8 @@
 //! What contacts need before the first increment: scales of penalties, and where slips count from.
 
-use crate::condensed::LinearBodies;
 use crate::increment_error::IncrementError;
 use crate::interaction::Bodies;
+use crate::linear_bodies::LinearBodies;
 use crate::system::{AssemblyError, System};
 
 impl System {

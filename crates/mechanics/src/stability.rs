@@ -15,22 +15,13 @@ use crate::admissible::Admissible;
 use crate::increment_error::IncrementError;
 use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
+pub use crate::unstable::Unstable;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::law::{Friction, LawPoint};
 use signorini_contact::{Law, Status};
 use signorini_solve::general::{Analysis, Entries, Matrix};
 use signorini_solve::ldlt::Ldlt;
 use std::sync::Arc;
-
-/// What is done with a state that is not stable.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unstable {
-    /// It is disturbed, and what follows is followed to a state that is stable.
-    #[default]
-    Follow,
-    /// It is told.
-    Tell,
-}
 
 /// How stable a state is.
 #[derive(Clone, Debug, Default, PartialEq)]

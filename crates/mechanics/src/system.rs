@@ -5,12 +5,12 @@
 //! its equation says so, and its residual is the reaction.
 
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
-use crate::condensed::LinearBodies;
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
+use crate::linear_bodies::LinearBodies;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
-use crate::stability::Unstable;
+use crate::unstable::Unstable;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
 use std::collections::BTreeMap;

@@ -19,6 +19,7 @@ pub mod list;
 pub mod material;
 pub mod nothing;
 pub mod paths;
+pub mod problem_part;
 pub mod rigid;
 pub mod shape;
 pub mod source;
@@ -35,11 +36,12 @@ pub use curve::*;
 pub use error::CaseError;
 pub use fit::{Fit, FitUnknown, Noise};
 pub use history::{ArcLength, AreaControl, Control, Step};
-pub use key_path::{KeyPath, Part, ProblemPart};
+pub use key_path::{KeyPath, Part};
 pub use list::{List, Named};
 pub use material::*;
 pub use nothing::Nothing;
 pub use paths::*;
+pub use problem_part::ProblemPart;
 pub use rigid::*;
 pub use shape::*;
 pub use signorini_expression::suggestion;
@@ -150,7 +152,7 @@ impl Problem {
 
     /// The way to a part of this problem; that of the whole for what is no part of it.
     pub fn key<T: ProblemPart>(&self, part: &T) -> KeyPath {
-        let found = key_path::find(self, part);
+        let found = problem_part::find(self, part);
         debug_assert!(found.is_some(), "a {} is no part of the problem", std::any::type_name::<T>());
         found.unwrap_or_default()
     }

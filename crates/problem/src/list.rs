@@ -1,7 +1,7 @@
 //! Lists and named tables of a problem, whose entries are found by where they lie.
 //!
 //! They are `Vec` and `BTreeMap`, which hand a serializer references to their entries, not the entries themselves; these hand
-//! on the entries, so that [`super::key_path`] meets them at their addresses.
+//! on the entries, so that [`super::problem_part`] meets them at their addresses.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::ser::{SerializeMap, SerializeSeq};

@@ -7,6 +7,7 @@
 mod border;
 mod cells;
 mod edge;
+mod edges;
 mod faces;
 mod fields;
 mod hold;
@@ -14,6 +15,7 @@ mod loads;
 mod master;
 mod moments;
 mod projection;
+mod spatial;
 mod surface;
 mod traction;
 
@@ -26,14 +28,15 @@ use crate::stiffness::{Table, stiffness};
 use edge::EdgeCurve;
 use faces::Faces;
 use rayon::prelude::*;
-use signorini_fem::{CellShape, DofMap, Group, Mesh, MeshError};
-use signorini_geometry::{Point, Vector};
+use signorini_fem::{DofMap, Group, Mesh, MeshError};
+use signorini_geometry::Point;
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Curve, Direction,
     Elimination, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint, Surface,
 };
+use spatial::spatial;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -209,11 +212,6 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
-/// A position or direction in space.
-fn spatial<const D: usize>(x: &Point<D>) -> Vector<3> {
-    Vector::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 })
-}
-
 /// Unit vector of a direction, in space.
 impl<const D: usize> Body for SolidBody<D> {
     fn name(&self) -> &str {
@@ -385,27 +383,3 @@ impl<const D: usize> ContactSides for SolidBody<D> {
 impl<const D: usize> Slack for SolidBody<D> {}
 
 impl<const D: usize> BoxOfMaterial for SolidBody<D> {}
-
-/// How far into a cell the force on a side of it reaches: its volume over the area of the side.
-fn depth<const D: usize>(bodies: &Bodies<D>, side: signorini_fem::Side) -> f64 {
-    use signorini_fem::rules::rule;
-    use signorini_fem::small::determinant;
-    let mesh = &bodies.list[0].mesh;
-    let cell = side.cell as usize;
-    let map = mesh.map(cell);
-    let mut at = signorini_fem::hierarchic::Values::default();
-    let volume: f64 = (rule(map.shape(), map.order() + 1).iter())
-        .map(|(x, w)| {
-            map.tabulate(x, &mut at);
-            w * determinant(&mesh.jacobian(cell, &at).1)
-        })
-        .sum();
-    let shape: CellShape = mesh.side_shape(side);
-    let area: f64 = (rule(shape, map.order() + 1).iter())
-        .map(|(s, w)| {
-            let (x, tangents) = mesh.on_side(side, s);
-            w * signorini_contact::FacePoint { x, tangents }.area_normal().norm()
-        })
-        .sum();
-    volume / area
-}

@@ -11,7 +11,8 @@
 //! - `y_a = F X_a`, `y_ab = F X_ab + u''(X_a, X_b)`, and `y_abc` alike.
 
 use super::CellSolid;
-use crate::body::{CellBody, Site};
+use crate::body::CellBody;
+use crate::cell::Site;
 use crate::jets::{FunctionJet, VectorJet};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::implicit::{Complement, HalfSpace};

@@ -1,7 +1,7 @@
 //! Loads in the volume of the material and on places of its boundary, on the reference configuration.
 
 use super::CellSolid;
-use crate::body::Site;
+use crate::cell::Site;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
 use rayon::prelude::*;

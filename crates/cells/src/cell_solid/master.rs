@@ -43,7 +43,7 @@ pub(super) struct BoundaryMaster<'a, const D: usize> {
 
 /// Whether a point of the boundary with an outward normal of any length lies across a gap from another, at the start: the
 /// normals oppose each other, and each of both points lies before the other.
-fn faces<const D: usize>(own: &crate::body::Site<D>, x: &Point<D>, normal: &Vector<D>) -> bool {
+fn faces<const D: usize>(own: &crate::cell::Site<D>, x: &Point<D>, normal: &Vector<D>) -> bool {
     let apart = x - own.x;
     own.normal.dot(normal) < FACING * normal.norm() && apart.dot(&own.normal) > 0.0 && apart.dot(normal) < 0.0
 }

@@ -4,7 +4,7 @@
 use super::hold::SideFunctions;
 use super::weak::WeakHold;
 use super::{BOUNDARY, CellSolid};
-use crate::body::Site;
+use crate::cell::Site;
 use crate::place::Place;
 use crate::shapes::spatial;
 use crate::spread::farthest_points;

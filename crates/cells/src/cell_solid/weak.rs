@@ -6,7 +6,7 @@
 //! force of the support: `∫ d·t(u) - γ (d·u - ū)`.
 
 use super::CellSolid;
-use crate::body::Site;
+use crate::cell::Site;
 use crate::nitsche::{NitschePart, RowSpace, Rows};
 use crate::shapes::spatial;
 use nalgebra::{DMatrix, DVector};

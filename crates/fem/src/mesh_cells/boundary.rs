@@ -1,7 +1,7 @@
 //! The pieces of a mesh's boundary.
 
 use crate::adjacency::Adjacency;
-use crate::cells::BoundarySide;
+use crate::boundary_side::BoundarySide;
 use crate::mesh::{Mesh, Side};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,10 +3,10 @@
 use super::curved::box_round;
 use super::place::for_each_bucket;
 use super::{MOST_ON_TRIANGLES, MeshCells, Parent};
+use crate::cell_parts::{PARTS, parts};
 use crate::cells::Cells;
 use crate::lists::Lists;
 use crate::mesh::Mesh;
-use crate::mesh_refinement::{PARTS, parts};
 use signorini_geometry::{Aabb, Point};
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! The quadrature rule of a reference cell, tabulated for its map and its functions.
 
 use crate::cell_map::CellMap;
-use crate::cells::whole_order;
 use crate::hierarchic::{HierarchicBasis, Values};
 use crate::rules::{Rule, rule};
+use crate::whole_rule::whole_order;
 
 /// A point of a quadrature rule in a reference cell.
 pub(super) struct RulePoint {

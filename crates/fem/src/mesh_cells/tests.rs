@@ -1,4 +1,5 @@
 use super::*;
+use crate::cells::Cells;
 use crate::cut::CellPartition;
 use crate::cut::RegionId;
 use crate::lagrange::Tabulation;

@@ -1,6 +1,6 @@
 //! A contact of sites as the system sees it.
 
-use super::partners::Partners;
+use super::partner::Partners;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;

@@ -6,7 +6,8 @@
 //! friction that is so passed on to it each node knows whether it slides. Nodes that would slide back are made to stick first:
 //! they have slid no farther than what was passed on to them.
 
-use super::traction::{Traction, axes};
+use super::axes::axes;
+use super::traction::Traction;
 use super::{Contact, MeasuredPair};
 use crate::pair::NoPair;
 use signorini_contact::{Law, Status};

@@ -1,6 +1,6 @@
 //! What a contact is found as in a state, and what it remembers of it.
 
-use super::traction::axes;
+use super::axes::axes;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::PlaceError;
 use crate::points::{Master, MaterialPoint};

@@ -14,8 +14,9 @@
 //! Only the sums are then written in the unknowns that move the normals at the vertices.
 
 use super::cover::{CoveredPoint, Seen};
-use super::measure::{Apart, Matched};
-use super::terms::{FaceTerms, Line, NodeTractions, Traction, Wanted};
+use super::face_terms::{FaceTerms, Line, Traction, Wanted};
+use super::measured::{Apart, Matched};
+use super::terms::NodeTractions;
 use crate::pair::axis;
 use crate::points::Direction;
 use crate::surface::{Local, Surface};

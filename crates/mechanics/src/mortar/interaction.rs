@@ -1,11 +1,13 @@
 //! Mortar contact as the system sees it.
 
+use super::at_rest::{AtRest, SmallSliding};
 use super::cover::CoveredPoint;
-use super::measure::{Facing, Matched, Measured, MetPoint, NodeMeasure, Opposite, Sides};
+use super::face_terms::{FaceTerms, Wanted};
+use super::measure::{Facing, Opposite, Sides};
+use super::measured::{Matched, Measured, MetPoint, NodeMeasure};
 use super::rigid;
 use super::shown::{shared_of, show, zone_of};
-use super::small::{AtRest, SmallSliding};
-use super::terms::{Assembly, FaceTerms, NodeTractions, Wanted};
+use super::terms::{Assembly, NodeTractions};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::contact_law::ContactLaw;

@@ -1,8 +1,9 @@
 //! Points of slave faces that meet a rigid body: pairs by its closest points, and what they add to residual and tangent.
 
 use super::cover::{CoveredPoint, FacingPart};
-use super::measure::Matched;
-use super::terms::{FaceTerms, Line, NodeTractions, Traction, Wanted};
+use super::face_terms::{FaceTerms, Line, Traction, Wanted};
+use super::measured::Matched;
+use super::terms::NodeTractions;
 use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Master, MaterialPoint, Order};
 use crate::surface::{Local, Surface};

@@ -1,6 +1,6 @@
 //! What a mortar contact goes on from, as plain numbers.
 
-use super::measure::Matched;
+use super::measured::Matched;
 use super::{Mortar, NodeMemory};
 use crate::points::MaterialPoint;
 use signorini_geometry::Vector;

@@ -2,7 +2,7 @@
 //! contact, which ends within faces.
 
 use super::cover::Nodes;
-use super::measure::Measured;
+use super::measured::Measured;
 use crate::shown_surface::SharedSite;
 use crate::site_result::{OfSurface, SiteResult};
 use crate::surface::Faces;

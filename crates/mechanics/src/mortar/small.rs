@@ -2,38 +2,19 @@
 //! displacements. Rigid masters are where they are at the time.
 
 use super::Mortar;
-use super::measure::{Facing, Measured, NodeMeasure, Sides};
+use super::at_rest::{AtRest, SmallSliding};
+use super::face_terms::{FaceTerms, Line, Wanted};
+use super::measure::{Facing, Sides};
+use super::measured::NodeMeasure;
 use super::rigid;
-use super::terms::{FaceTerms, Line, NodeTractions, Wanted};
+use super::terms::NodeTractions;
 use crate::body::{BodyState, PlaceError};
 use crate::interaction::Bodies;
 use signorini_contact::compress;
 use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
-
-/// The measures with the bodies at rest, and the displacements from which slips count.
-#[derive(Default)]
-pub(super) struct SmallSliding {
-    /// Found when it is first asked for in an increment.
-    at_rest: OnceLock<Arc<AtRest>>,
-    /// Displacements of slave and master at the last state.
-    pub since: [Vec<f64>; 2],
-}
-
-/// Both sides with deformable bodies at rest.
-pub(super) struct AtRest {
-    pub measured: Arc<Measured>,
-    measures: Vec<NodeMeasure>,
-    /// Rows and columns of all nodes.
-    pub terms: FaceTerms,
-}
+use std::sync::Arc;
 
 impl SmallSliding {
-    /// Forgets what was found for another time, or before what follows from the last state changed.
-    pub fn forget(&mut self) {
-        self.at_rest = OnceLock::new();
-    }
-
     /// What is found at rest, and the measures of the nodes in a state.
     ///
     /// # Errors

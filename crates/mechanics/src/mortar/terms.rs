@@ -1,46 +1,13 @@
 //! What the points of a face add to residual and tangent: in the unknowns of bodies, and for each node.
 
 use super::Mortar;
-use super::measure::NodeMeasure;
+use super::face_terms::{FaceTerms, Traction};
+use super::measured::NodeMeasure;
 use crate::interaction::{Assembler, InteractionUnknowns};
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
 use signorini_geometry::{Matrix, Vector};
 use signorini_solve::general::Entries;
-
-/// A row or column over the unknowns of bodies, by unknown, of a component of the traction of a node.
-#[derive(Clone, Debug)]
-pub(super) struct Line {
-    pub node: u32,
-    /// 0 is the pressure, 1 and 2 are friction along the axes.
-    pub slot: usize,
-    pub entries: Vec<(u32, f64)>,
-}
-
-/// What of it is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
-    Forces,
-    /// Rows and columns of nodes too.
-    Lines,
-    /// The derivatives of forces in the unknowns of bodies too.
-    Tangent,
-}
-
-/// What a face adds.
-#[derive(Clone, Debug, Default)]
-pub(super) struct FaceTerms {
-    /// Forces on unknowns, and the sums of the sizes of their terms.
-    pub forces: Vec<(u32, f64)>,
-    pub sizes: Vec<(u32, f64)>,
-    /// Their derivatives in the unknowns of bodies: the unknowns, and values row by row.
-    pub stiffness: (Vec<u32>, Vec<f64>),
-    /// Forces of a unit of traction.
-    pub pushes: Vec<Line>,
-    /// Derivatives of the integrals of gaps and slips over the functions of nodes.
-    pub gaps: Vec<Line>,
-    pub slips: Vec<Line>,
-}
 
 /// What the nodes of a contact carry.
 pub(super) struct NodeTractions<'a> {
@@ -49,13 +16,6 @@ pub(super) struct NodeTractions<'a> {
     pub tractions: Vec<[f64; 3]>,
     /// Whether a node carries something, or may.
     pub acts: Vec<bool>,
-}
-
-/// Traction at a point: with friction in space, and how that changes with the normal.
-pub(super) struct Traction {
-    pub pressure: f64,
-    pub friction: Vector<3>,
-    pub turning: Matrix<3>,
 }
 
 impl NodeTractions<'_> {

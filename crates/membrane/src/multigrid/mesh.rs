@@ -11,7 +11,7 @@ use crate::plane_zone::PlaneZone;
 use crate::problem::Membrane;
 use crate::zone::Division;
 use rayon::prelude::*;
-use signorini_fem::mesh_refinement::PARTS;
+use signorini_fem::cell_parts::PARTS;
 use signorini_fem::{Cells, CellsPart, Grid, MeshCells};
 use signorini_geometry::{Aabb, Point};
 use signorini_solve::SolveError;

@@ -8,6 +8,7 @@
 pub mod body;
 pub mod element;
 pub mod form;
+mod on_winch;
 pub mod winch;
 
 pub use body::{Chain, ChainError};

@@ -13,8 +13,7 @@ mod section;
 pub use chain::EdgeError;
 
 use super::faces::Faces;
-use super::{SolidBody, spatial};
-use crate::material::Space;
+use super::spatial::spatial;
 use section::{Change, Section};
 use signorini_fem::Local;
 use signorini_fem::rules::rule;
@@ -23,7 +22,6 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::curve::{Closure, Continuity, Curve, CurvePoint};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Foot, Function, Sampling, Site, SlavePoint};
-use std::collections::BTreeMap;
 
 /// An edge as it is stated: where two surfaces meet, by their groups, and the radius of its rounding, 0 if it is sharp.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +31,7 @@ pub struct EdgeOf {
 }
 
 /// Along an edge of cells, from one vertex to the next.
-struct Element {
+pub(super) struct Element {
     /// Points of Bezier at rest.
     points: [Point<3>; 4],
     /// Functions that move it, with their weights in each point of Bezier.
@@ -50,7 +48,7 @@ struct Element {
 
 /// An edge of a solid.
 pub(super) struct EdgeCurve {
-    elements: Vec<Element>,
+    pub(super) elements: Vec<Element>,
     closure: Closure,
     radius: f64,
     /// Length up to each element.
@@ -59,7 +57,7 @@ pub(super) struct EdgeCurve {
     youngs_modulus: f64,
     degree: usize,
     /// The first number of its elements among all edges of the body, as sites have it.
-    first: u32,
+    pub(super) first: u32,
 }
 
 /// Points of Gauss of each element: as many as of other curves.
@@ -84,48 +82,8 @@ fn between([a, b]: &[Local; 2], t: f64) -> Local {
     std::array::from_fn(|k| a[k] + t * (b[k] - a[k]))
 }
 
-impl<const D: usize> SolidBody<D> {
-    /// The solid with edges that may touch as curves, by name: each the chain of cell edges along which two groups of sides
-    /// meet.
-    ///
-    /// # Errors
-    /// Edges that are not there, that branch, turn or fall into pieces, and a body in the plane.
-    #[inline(never)]
-    pub fn with_edges(mut self, edges: &BTreeMap<String, EdgeOf>) -> Result<Self, EdgeError> {
-        if self.space() != Space::Solid && !edges.is_empty() {
-            return Err(EdgeError::Plane);
-        }
-        let mut first = 0;
-        for (name, edge) in edges {
-            if self.groups.contains_key(name) {
-                return Err(EdgeError::Taken { edge: name.clone() });
-            }
-            if !(edge.radius >= 0.0 && edge.radius.is_finite()) {
-                return Err(EdgeError::Radius { edge: name.clone(), radius: edge.radius });
-            }
-            let mut curve = EdgeCurve::new(&self, name, edge)?;
-            curve.first = first;
-            first += curve.elements.len() as u32;
-            self.edges.insert(name.clone(), curve);
-        }
-        Ok(self)
-    }
-
-    /// The edge that a site is on, and the element of it.
-    pub(super) fn edge_at(&self, site: &Site) -> Option<(&EdgeCurve, usize)> {
-        let number = site.patch.checked_sub(EDGES)?;
-        let edge = self.edges.values().find(|e| (e.first..e.first + e.elements.len() as u32).contains(&number))?;
-        Some((edge, (number - edge.first) as usize))
-    }
-
-    /// An edge as a curve.
-    pub(super) fn edge<'a>(&'a self, name: &str) -> Option<PlacedEdge<'a, D>> {
-        self.edges.get(name).map(|edge| PlacedEdge { edge, faces: &self.faces })
-    }
-}
-
 /// Numbers of sites from which on they are those of edges.
-const EDGES: u32 = 1 << 31;
+pub(super) const EDGES: u32 = 1 << 31;
 
 impl EdgeCurve {
     /// Where the points of Bezier of an element are now.
@@ -265,8 +223,8 @@ struct Turning {
 
 /// An edge of a body as a curve.
 pub(super) struct PlacedEdge<'a, const D: usize> {
-    edge: &'a EdgeCurve,
-    faces: &'a Faces<D>,
+    pub(super) edge: &'a EdgeCurve,
+    pub(super) faces: &'a Faces<D>,
 }
 
 impl<const D: usize> Curve for PlacedEdge<'_, D> {

@@ -1,6 +1,6 @@
 //! The faces of a solid that may touch: the points that are tested on them, tabulated once, and what moves them.
 
-use super::{axis, depth, spatial};
+use super::spatial::{depth, spatial};
 use crate::body::{Bodies, BodySurface};
 use rayon::prelude::*;
 use signorini_contact::{FacePoint, PressureNodes};
@@ -8,6 +8,7 @@ use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
 use signorini_geometry::{Matrix, Point, Vector};
+use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Direction, Function, NormalField, Sampling, SecondDerivative, Site, SlavePoint};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;

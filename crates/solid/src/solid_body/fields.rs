@@ -1,6 +1,7 @@
 //! A solid as it is shown: cells divided into straight ones, with displacement and stress at their points.
 
-use super::{SolidBody, spatial};
+use super::SolidBody;
+use super::spatial::spatial;
 use crate::hyperelastic::StressLaw;
 use crate::material::{Space, von_mises};
 use crate::stiffness::Table;

@@ -1,7 +1,8 @@
 //! What supports hold: functions on a place, at the values that fit a prescribed displacement best.
 
+use super::SolidBody;
 use super::projection::{functions, project};
-use super::{SolidBody, spatial};
+use super::spatial::spatial;
 use crate::body::Bodies;
 use signorini_fem::Group;
 use signorini_geometry::{Point, Vector};

@@ -3,7 +3,8 @@
 //! A pressure `p` acts on the current area, `r = p ∫ N x_1 × x_2`; its derivative is that of the area normal, symmetric on
 //! a closed surface (Bufler 1984). At small strain it acts on the reference area.
 
-use super::{SolidBody, axis, spatial};
+use super::spatial::spatial;
+use super::{SolidBody, axis};
 use crate::hyperelastic::StressLaw;
 use crate::material::Space;
 use rayon::prelude::*;

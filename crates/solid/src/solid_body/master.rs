@@ -4,9 +4,10 @@
 //! across it, along which nothing changes. Contact of a surface with itself leaves out what hangs together with a site, and
 //! takes only what faces it.
 
+use super::axis;
 use super::border::Place;
 use super::faces::{Face, Faces, Surface};
-use super::{axis, spatial};
+use super::spatial::spatial;
 use rayon::prelude::*;
 use signorini_fem::hierarchic::Derivatives;
 use signorini_fem::{CellShape, Local};

@@ -2,7 +2,7 @@
 
 use super::SolidBody;
 use super::faces::{Faces, Surface};
-use super::spatial;
+use super::spatial::spatial;
 use crate::body::BodySurface;
 use rayon::prelude::*;
 use signorini_fem::Local;

@@ -1,7 +1,8 @@
 //! The traction by the stress of a solid of small strains at a tested point, for Nitsche's method.
 
+use super::SolidBody;
 use super::faces::Faces;
-use super::{SolidBody, spatial};
+use super::spatial::spatial;
 use crate::StressLaw;
 use crate::stiffness::{Table, traction};
 use signorini_geometry::Point;

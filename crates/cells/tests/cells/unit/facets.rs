@@ -1,8 +1,8 @@
 //! Of `facets`.
 
-use signorini_cells::body::box_points;
 use signorini_cells::error::CellsError;
 use signorini_cells::facets::FacetBody;
+use signorini_cells::moments::box_points;
 use signorini_cells::region::{Filling, Integration, Region};
 use signorini_cells::tree::CellTree;
 use signorini_fem::cut::End;

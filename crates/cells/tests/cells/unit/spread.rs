@@ -1,6 +1,6 @@
 //! Of `spread`.
 
-use signorini_cells::body::Site;
+use signorini_cells::cell::Site;
 use signorini_cells::testing::{SAME_FACE, farthest_points};
 use signorini_geometry::{Point, Vector};
 

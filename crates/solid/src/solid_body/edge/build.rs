@@ -38,7 +38,11 @@ impl EdgeCurve {
     ///
     /// # Errors
     /// Edges that are not there, that branch, turn or fall into pieces.
-    pub(super) fn new<const D: usize>(body: &SolidBody<D>, name: &str, stated: &EdgeOf) -> Result<Self, EdgeError> {
+    pub(in crate::solid_body) fn new<const D: usize>(
+        body: &SolidBody<D>,
+        name: &str,
+        stated: &EdgeOf,
+    ) -> Result<Self, EdgeError> {
         let (links, closure) = chain::links(body, name, &stated.surfaces)?;
         let faces = &body.faces;
         let count = links.len();

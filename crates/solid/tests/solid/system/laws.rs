@@ -61,11 +61,8 @@ fn the_gap_of_a_rough_surface_is_that_of_its_pressure() {
         let near = |h: f64| rough.pressure(trial + h, &point)[0];
         assert!((found / p - 1.0).abs() < 1e-12 && (slope - (near(1e-6) - near(-1e-6)) / 2e-6).abs() < 1e-7, "{above}");
     }
-    let enforcements = [
-        Enforcement::Multiplier,
-        Enforcement::AugmentedLagrangian,
-        Enforcement::Penalty { wanted_penetration: Some(1e-6) },
-    ];
+    // A penalty would give way besides the law.
+    let enforcements = [Enforcement::Multiplier, Enforcement::AugmentedLagrangian];
     let sites = [Test::Sites(Sampling::GaussPoints), Test::Mortar(0)];
     for (test, enforcement) in sites.into_iter().flat_map(|t| enforcements.map(|e| (t, e))) {
         // Below and above the scale of the law; the block starts apart and ends apart, or inside by a little.

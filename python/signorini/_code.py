@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any, List, Mapping, Tuple
 
 import numpy as np
@@ -11,6 +12,8 @@ from ._errors import CaseError
 
 #: Lines are broken beyond this length.
 WIDTH = 100
+#: Keys of a problem in the order of case files; others follow.
+FIRST = ("title", "analysis", "units", "space", "constants", "functions", "bodies", "supports", "loads", "contacts", "steps")
 
 
 def code(problem: Noun) -> str:
@@ -49,8 +52,14 @@ class _Writer:
     def parts(self, value: Any, path: str) -> "Tuple[str, List[Tuple[str, Any, str]], str]":
         """Opening, named entries with their paths, and closing of a value; without entries the opening is all of it."""
         if isinstance(value, (Noun, Samples)):
-            names = value._types if isinstance(value, Noun) else ("values", "spacing", "origin")
-            stated = [(f"{n}=", getattr(value, n), _below(path, n)) for n in names if not _left_out(getattr(value, n))]
+            names = list(value._types) if isinstance(value, Noun) else ["values", "spacing", "origin"]
+            if not path:
+                names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
+            alone = names == ["value"]
+            parameters = inspect.signature(type(value).__init__).parameters
+            required = {n for n in names if n in parameters and parameters[n].default is inspect.Parameter.empty}
+            given = [n for n in names if not _left_out(getattr(value, n)) or n in required]
+            stated = [("" if alone else f"{n}=", getattr(value, n), _below(path, n)) for n in given]
             kind = type(value).__name__
             return (f"sg.{kind}(", stated, ")") if stated else (f"sg.{kind}()", [], "")
         if isinstance(value, Mapping):

@@ -106,11 +106,11 @@ class Problem(ProblemKeys):
         Functions are written as the expressions that they compute, arrays as `np.array` with all of their numbers.
 
         >>> import signorini as sg
-        >>> load = sg.Load(on="film", normal=lambda x: -1 - x)
-        >>> print(sg.Problem(space="line", loads={"press": load}).to_python())
+        >>> floor = sg.Rigid(shape=sg.Height(lambda x: 2 - x))
+        >>> print(sg.Problem(space="line", bodies={"floor": floor}).to_python())
         import signorini as sg
         <BLANKLINE>
-        problem = sg.Problem(space="line", loads={"press": sg.Load(on="film", normal="(-1 - x)")})
+        problem = sg.Problem(space="line", bodies={"floor": sg.Rigid(shape=sg.Height("(2 - x)"))})
         <BLANKLINE>
         """
         from ._code import code

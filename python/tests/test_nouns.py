@@ -51,7 +51,7 @@ def test_arrays_functions_and_samples_are_code():
     problem = sg.Problem(
         constants={"n": np.int64(3)},
         bodies={
-            "rope": sg.Rope(path=np.arange(6.0).reshape(2, 3)),
+            "rope": sg.Rope(path=np.arange(6.0).reshape(2, 3), stiffness=1),
             "floor": sg.Rigid(shape=sg.Height(heights)),
             "ball": sg.Rigid(shape=sg.Sphere(center=np.zeros(3, ">f4"), radius=1)),
         },
@@ -61,7 +61,7 @@ def test_arrays_functions_and_samples_are_code():
     exec(text, names)  # noqa: S102
     assert names["problem"].to_toml() == problem.to_toml() and "np.array([[0.0, 1.0, 2.0]" in text
     with pytest.raises(sg.CaseError, match="as code") as caught:
-        sg.Problem(loads={"pull": sg.Load(force=object())}).to_python()
+        sg.Problem(bodies={}, loads={"pull": sg.Load(on="rope", force=object())}).to_python()
     assert caught.value.path == "loads.pull.force"
 
 

@@ -96,7 +96,7 @@ describe("the site", () => {
   it("is dark where that is preferred", async () => {
     const light = async (scheme) => {
       const { page, problems } = await open(chromium, path("tutorial.html"), { colorScheme: scheme });
-      const colour = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+      const colour = await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
       assert.deepEqual(problems, []);
       await page.close();
       const [red, green, blue] = colour.match(/\d+/g).map(Number);

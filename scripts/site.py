@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 import time
 import tomllib
 import urllib.parse
@@ -20,6 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 #: Parts of the list of cases, and what a case of each has.
 PARTS = ["Membranes", "Solids", "Ropes and beams", "Finite cells", "Paths on rigid bodies", "Scenes"]
 FOLDER_OF_RUNS = "site-runs"
+#: Characters in a line of what a command prints.
+WIDTH = 100
 
 
 def part_of(case: dict) -> str:
@@ -31,6 +34,11 @@ def part_of(case: dict) -> str:
         if kind in kinds:
             return PARTS[part]
     return "Solids"
+
+
+def address(part: str) -> str:
+    """What the page of a part is called."""
+    return "all-" + part.lower().replace(" ", "-")
 
 
 def program(name: str, case: dict) -> str:
@@ -61,6 +69,12 @@ def run(command: str, name: str, runs: pathlib.Path, again: bool) -> "pathlib.Pa
     return folder
 
 
+def wrapped(printed: str) -> str:
+    """What a command prints, in lines that a page holds. Lines of tables begin with blanks and stay as they are."""
+    lines = printed.strip("\n").split("\n")
+    return "\n".join(line if line.startswith(" ") or not line else textwrap.fill(line, WIDTH, break_long_words=False) for line in lines)
+
+
 def page(name: str, target: pathlib.Path, results: "pathlib.Path | None") -> "tuple[str, str]":
     """Writes the page of a case with its files; returns its part of the list and its title."""
     source = ROOT / "gallery" / name
@@ -75,7 +89,7 @@ def page(name: str, target: pathlib.Path, results: "pathlib.Path | None") -> "tu
         picture = results / first if first else picture
         shutil.copy(results / "report.html", target / f"{name}.report.html")
         links.append(f"[Report of this run]({name}.report.html): the result to turn and cut, histories, checks.")
-        printed = (results.parent / f"{name}.log").read_text(encoding="utf-8").strip("\n")
+        printed = wrapped((results.parent / f"{name}.log").read_text(encoding="utf-8").replace(str(results), name))
     shutil.copy(picture, target / f"{name}{picture.suffix}")
     title = about.split("\n", 1)[0].lstrip("# ")
     about = about.replace("(picture.png)", f"({name}{picture.suffix})")
@@ -113,12 +127,14 @@ def gallery(target: pathlib.Path, command: str, quick: bool, again: bool) -> "li
         sys.exit(f"these cases do not run: {', '.join(failed)}")
     lines = ["# Gallery", "", "Every case runs with `signorini gallery run NAME`. Its page has the result, the case file, and the same in Python.", ""]
     for part in PARTS:
-        lines += [f"## {part}", "", '<div class="gallery">']
+        listed = ['<div class="gallery">']
         for name, of, title in found:
             if of == part:
                 image = next(p for p in folder.glob(f"{name}.*") if p.suffix in (".png", ".svg"))
-                lines.append(f'<a href="{name}.html"><img src="{image.name}" alt="" loading="lazy"><span>{title}</span></a>')
-        lines += ["</div>", ""]
+                listed.append(f'<a href="{name}.html"><img src="{image.name}" alt="" loading="lazy"><span>{title}</span></a>')
+        listed += ["</div>", ""]
+        lines += [f"## {part}", "", *listed]
+        (folder / f"{address(part)}.md").write_text("\n".join([f"# {part}", "", *listed]), encoding="utf-8")
     (folder / "index.md").write_text("\n".join(lines), encoding="utf-8")
     return [(part, name, title) for name, part, title in found]
 
@@ -137,11 +153,12 @@ def verified(target: pathlib.Path, command: str) -> None:
         "|---|---|---|---|---|---|",
     ]
     for row in rows:
-        numbers = (
-            f"{row['found']:.10g} | {row['exact']:.10g} | {row['error']:.1e} | {row['allowed']:.0e} | {row['source']}"
-            if "found" in row
-            else f"{row['error']} | | | |"
-        )
+        numbers = f"{row['error']} | | | |"
+        if "found" in row:
+            found, exact = (f"{row[key]:.10g}" for key in ("found", "exact"))
+            # A hyphen at which no line is broken.
+            error, allowed = (re.sub(r"e-0?", "e\u2011", f"{row[key]:.1e}") for key in ("error", "allowed"))
+            numbers = f"{found} | {exact} | {error} | {allowed} | {row['source']}"
         lines.append(f"| {row['problem']} | {numbers} |")
     right = sum(row["holds"] for row in rows)
     lines += ["", f"{right} of {len(rows)} hold.", ""]
@@ -172,7 +189,7 @@ def make(target: pathlib.Path, command: str, quick: bool, again: bool) -> None:
     summary = (target / "SUMMARY.md").read_text(encoding="utf-8")
     listed = ["# Gallery", "", "- [All cases](gallery/index.md)"]
     for part in PARTS:
-        listed.append(f"- [{part}]()")
+        listed.append(f"- [{part}](gallery/{address(part)}.md)")
         listed += [f"  - [{title}](gallery/{name}.md)" for of, name, title in cases if of == part]
     summary = summary.replace("# Reference\n", "\n".join(listed) + "\n\n# Reference\n", 1)
     summary = re.sub(r"(- \[Validation\]\(validation.md\)\n)", r"\1  - [Problems with known answers](verify.md)\n", summary)

@@ -56,7 +56,8 @@ fn every_complete_case_of_the_manual_is_valid() {
                 made.unwrap_or_else(|e| panic!("{place}{}", e.one_line()));
                 continue;
             }
-            let problem = signorini::case::read("case.toml", case, &[]).unwrap_or_else(|e| panic!("{place}{}", e.one_line()));
+            let problem =
+                signorini::case::read("case.toml", case, &[]).unwrap_or_else(|e| panic!("{place}{}", e.one_line()));
             signorini::plan::plan(&problem).unwrap_or_else(|e| panic!("{place}{}", e.one_line()));
         }
     }
@@ -66,7 +67,11 @@ fn every_complete_case_of_the_manual_is_valid() {
 /// What a heading is called in links to it.
 fn anchor(heading: &str) -> String {
     let plain = heading.trim().to_lowercase();
-    plain.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).map(|c| if c == ' ' { '-' } else { c }).collect()
+    plain
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+        .map(|c| if c == ' ' { '-' } else { c })
+        .collect()
 }
 
 /// The text without blocks of code and without code in lines.

@@ -113,7 +113,7 @@ def gallery(target: pathlib.Path, command: str, quick: bool, again: bool) -> "li
     """Writes the pages of all cases and their list; returns part, name and title of each."""
     listed = json.loads(subprocess.run([command, "gallery", "--json"], check=True, capture_output=True, text=True).stdout)
     names = [entry["name"] for entry in listed]
-    runs = target.parent / FOLDER_OF_RUNS
+    runs = target.resolve().parent / FOLDER_OF_RUNS
     folder = target / "gallery"
     folder.mkdir(parents=True)
     runs.mkdir(exist_ok=True)
@@ -167,12 +167,26 @@ def verified(target: pathlib.Path, command: str) -> None:
         sys.exit("\n".join(lines))
 
 
+def reproduced(target: pathlib.Path, command: str, again: bool) -> None:
+    """The figures of the publication, computed now in place of those of the repository."""
+    folder = target.resolve().parent / FOLDER_OF_RUNS / "validation"
+    done = folder / "done"
+    if again or not done.is_file() or done.stat().st_mtime < pathlib.Path(command).stat().st_mtime:
+        shutil.rmtree(folder, ignore_errors=True)
+        subprocess.run([command, "reproduce", "all", "-o", folder], check=True, capture_output=True)
+        done.touch()
+    for path in [*folder.glob("*.md"), *folder.glob("*.svg")]:
+        shutil.copy(path, target / "validation")
+
+
 def make(target: pathlib.Path, command: str, quick: bool, again: bool) -> None:
     """The source of the site: a copy of the manual, with the pages that are computed."""
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(ROOT / "docs", target)
     cases = gallery(target, command, quick, again)
     verified(target, command)
+    if not quick:
+        reproduced(target, command, again)
     # Cases that the manual names lead to their pages.
     known = {name for _, name, _ in cases}
     for path in target.rglob("*.md"):

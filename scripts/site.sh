@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the site into target/book: the manual, a page for each case of the gallery with its picture, its report and its program
-# in Python, and the problems with known answers. Needs mdbook and Python 3.11. Nothing that it writes is kept in the repository.
+# in Python, the problems with known answers and the figures of the validation. Needs mdbook and Python 3.11. Nothing that it
+# writes is kept in the repository.
 #   sh scripts/site.sh              runs the gallery
 #   sh scripts/site.sh --quick      takes the pictures of the repository; no runs and no reports
 #   sh scripts/site.sh --new        runs the gallery again, also what an earlier call has run

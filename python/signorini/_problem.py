@@ -100,6 +100,23 @@ class Problem(ProblemKeys):
             (target.parent / name).write_bytes(content)
         return text
 
+    def to_python(self) -> str:
+        """The problem as a Python program, in which it is called `problem`.
+
+        Functions are written as the expressions that they compute, arrays as `np.array` with all of their numbers.
+
+        >>> import signorini as sg
+        >>> floor = sg.Rigid(shape=sg.Height(lambda x: 2 - x))
+        >>> print(sg.Problem(space="line", bodies={"floor": floor}).to_python())
+        import signorini as sg
+        <BLANKLINE>
+        problem = sg.Problem(space="line", bodies={"floor": sg.Rigid(shape=sg.Height("(2 - x)"))})
+        <BLANKLINE>
+        """
+        from ._code import code
+
+        return code(self)
+
     def check(self) -> dict:
         """See :func:`signorini.check`."""
         from ._run import check

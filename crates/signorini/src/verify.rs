@@ -4,6 +4,7 @@ use crate::run::run;
 use serde_json::{Value, json};
 use signorini_solve::Silent;
 use signorini_verify::flat_floor::{FlatFloor, Kind};
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// A problem with a known answer.
@@ -12,7 +13,8 @@ pub struct Problem {
     /// A case of the gallery, changed in these keys.
     case: &'static str,
     set: &'static [&'static str],
-    /// Where in the summary the figure stands.
+    /// Where in the summary the figure stands: a key of the first contact at the end; `event:KIND`; a path that begins with
+    /// `/`, in which -1 is the last entry of a list; or the difference of two such paths.
     figure: &'static str,
     exact: fn() -> f64,
     /// Allowed error, relative.
@@ -38,8 +40,8 @@ impl Verdict {
     }
 }
 
-/// The problems, quickest first.
-pub const PROBLEMS: [Problem; 9] = [
+/// The problems, of every kind of body.
+pub const PROBLEMS: [Problem; 19] = [
     Problem {
         name: "a string on a flat floor: contact length",
         case: "string",
@@ -123,7 +125,107 @@ pub const PROBLEMS: [Problem; 9] = [
         allowed: 1.5e-2,
         source: "Hertz, for a half space",
     },
+    Problem {
+        name: "a block pushed up a wedge with friction: force",
+        case: "wedge",
+        set: &[],
+        figure: "/steps/-1/support_forces/push/0",
+        exact: || (0.1 + 0.3) / (1.0 - 0.1 * 0.3),
+        allowed: 1e-5,
+        source: "statics, NAFEMS CGS-4",
+    },
+    Problem {
+        name: "a press fit at finite strain that slips: dissipation",
+        case: "press_fit",
+        set: &[],
+        figure: "dissipation",
+        exact: || 0.001 * 0.829_38,
+        allowed: 5e-3,
+        source: "Lamé and Coulomb, small strain",
+    },
+    Problem {
+        name: "a rope round a drum: logarithm of the ratio of tensions",
+        case: "capstan",
+        set: &["bodies.rope.rope.cells=120", "steps=[{ to = 0.1, increments = 1 }]"],
+        figure: "rope/log_ratio/1",
+        exact: || 0.3 * 1.5 * PI,
+        allowed: 1e-2,
+        source: "Euler and Eytelwein",
+    },
+    Problem {
+        name: "a rope that slides over an elastic pulley: tension",
+        case: "elastic_pulley",
+        set: &[],
+        figure: "/steps/-1/curves/rope/end_tension",
+        exact: || 0.1 * (0.3 * PI).exp(),
+        allowed: 3e-3,
+        source: "Euler and Eytelwein",
+    },
+    Problem {
+        name: "a free drum turned by a moment: difference of tensions",
+        case: "belt",
+        set: &[],
+        figure: "/steps/-1/curves/belt/max_tension - /steps/-1/curves/belt/min_tension",
+        exact: || 1.5 / 1.02,
+        allowed: 1e-3,
+        source: "balance of moments",
+    },
+    Problem {
+        name: "two beams that cross, small displacements: force",
+        case: "crossing",
+        set: &["supports.b.displacement=[0, 0, \"-0.011*t\"]", "steps=[{ to = 1 }]"],
+        figure: "force/2",
+        exact: crossing_force,
+        allowed: 1e-3,
+        source: "Timoshenko, clamped beams",
+    },
+    Problem {
+        name: "finite cells, a plate with a hole: displacement beside it",
+        case: "plate_holes",
+        set: &[],
+        figure: "/steps/-1/probes/side/displacement/0",
+        exact: || 3e-3,
+        allowed: 1e-4,
+        source: "Kirsch",
+    },
+    Problem {
+        name: "finite cells, a disc on a plane: force",
+        case: "hertz_cells",
+        set: &[],
+        figure: "force/1",
+        // Half of the disc.
+        exact: || 0.018_384_6 / 2.0,
+        allowed: 1e-3,
+        source: "a fitted mesh of high order",
+    },
+    Problem {
+        name: "a shortest path over an ellipsoid: length",
+        case: "geodesic",
+        set: &[],
+        figure: "/paths/0/frames/-1/length",
+        exact: || 5.488_014_095_081,
+        allowed: 1e-9,
+        source: "the boundary value problem",
+    },
+    Problem {
+        name: "a yarn wound on an ellipsoid: radius at which it turns",
+        case: "dome",
+        set: &[],
+        figure: "/winding/0/circuit/turn_radii/0",
+        exact: || 50.0 * (PI / 6.0).sin(),
+        allowed: 1e-9,
+        source: "Clairaut",
+    },
 ];
+
+/// The force between two beams of length 4 and radius 0.05, clamped at both ends, of which one is moved by 0.001 against the other one.
+fn crossing_force() -> f64 {
+    let (length, radius, modulus) = (4.0_f64, 0.05_f64, 1e6);
+    let area = PI * radius.powi(2);
+    let bending = length.powi(3) / (192.0 * modulus * area * radius.powi(2) / 4.0);
+    let shear = length / (4.0 * 0.9 * modulus / 2.6 * area);
+    0.001 / (2.0 * (bending + shear))
+}
 
 /// A membrane of unit size, tension and load over a floor at 0.1: the force is the area of contact.
 const FLAT: FlatFloor = FlatFloor { tension: 1.0, load: 1.0, depth: 0.1, radius: 1.0, kind: Kind::String };
@@ -136,12 +238,18 @@ pub fn verify(problem: &Problem, folder: &Path) -> Result<Verdict, String> {
     let example = crate::gallery::find(problem.case).ok_or_else(|| format!("no case `{}`", problem.case))?;
     let mut set: Vec<String> = problem.set.iter().map(|s| s.to_string()).collect();
     set.push("output.pictures=false".into());
-    let stated = crate::case::read(example.name, example.case, &set).map_err(|e| e.one_line())?;
-    let outcome = run(&stated, folder, &mut Silent).map_err(|e| e.to_string())?;
-    if !outcome.summary.converged {
-        return Err(outcome.summary.verdict);
+    let summary = if crate::gallery::PATHS.iter().any(|e| e.name == example.name) {
+        set.pop();
+        let case = crate::paths::PathCase::parse(example.name, example.case, &set).map_err(|e| e.one_line())?;
+        crate::paths::run(&case, folder, &mut Silent).map_err(|e| format!("{e:?}"))?
+    } else {
+        let stated = crate::case::read(example.name, example.case, &set).map_err(|e| e.one_line())?;
+        run(&stated, folder, &mut Silent).map_err(|e| e.to_string())?.summary
+    };
+    if !summary.converged {
+        return Err(summary.verdict);
     }
-    let found = figure(&json!(outcome.summary), problem.figure).ok_or("the summary does not contain this quantity")?;
+    let found = figure(&json!(summary), problem.figure).ok_or("the summary does not contain this quantity")?;
     let exact = (problem.exact)();
     let error = (found - exact).abs() / exact.abs();
     let Problem { name, allowed, source, .. } = *problem;
@@ -152,6 +260,20 @@ fn figure(summary: &Value, name: &str) -> Option<f64> {
     if let Some(kind) = name.strip_prefix("event:") {
         return summary["events"].as_array()?.iter().find(|e| e["kind"] == kind)?["time"].as_f64();
     }
-    let contact = summary["steps"].as_array()?.last()?["contacts"].as_object()?.values().next()?;
-    contact.pointer(&format!("/{name}"))?.as_f64()
+    if let Some((large, small)) = name.split_once(" - ") {
+        return Some(figure(summary, large)? - figure(summary, small)?);
+    }
+    if name.starts_with('/') {
+        return at(summary, name)?.as_f64();
+    }
+    at(summary, "/steps/-1/contacts")?.as_object()?.values().next()?.pointer(&format!("/{name}"))?.as_f64()
+}
+
+/// What stands at a path, in which -1 is the last entry of a list.
+fn at<'a>(value: &'a Value, path: &str) -> Option<&'a Value> {
+    path.split('/').skip(1).try_fold(value, |inner, key| match inner {
+        Value::Array(list) if key == "-1" => list.last(),
+        Value::Array(list) => list.get(key.parse::<usize>().ok()?),
+        _ => inner.get(key),
+    })
 }

@@ -9,6 +9,7 @@ mod cells;
 mod closest_points;
 mod cosine_floor;
 mod curves;
+mod docs;
 mod events;
 mod fit;
 mod flat_floor;

@@ -14,7 +14,7 @@ trap 'rm -rf "$environment"' EXIT
 # The folder of the workspace keeps what is built.
 CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/target}" \
     "$environment/bin/pip" --disable-pip-version-check --quiet install "${package}[test]" || {
-    echo "The Python package could not be built, or packages not be fetched from PyPI: see the lines above." >&2
+    echo "The Python package could not be built, or what it needs could not be fetched from PyPI: see the lines above." >&2
     exit 1
 }
 "$environment/bin/python" -m pytest python -p no:cacheprovider

@@ -33,9 +33,7 @@ pub fn new(template: &str, folder: Option<PathBuf>, json: bool) -> u8 {
     let named = case.lines().filter(|l| !l.starts_with('#')).flat_map(|l| l.split('"').skip(1).step_by(2));
     files.extend(named.filter_map(|name| Some((name.to_string(), asset(name)?.to_vec()))));
     if let Err(error) = write_all(&folder, &files) {
-        let error = CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
-            .help("check that this program may write there");
-        return report(&error, json);
+        return report(&not_written(&folder, &error), json);
     }
     let path = folder.join("case.toml");
     if json {
@@ -96,6 +94,24 @@ fn migrated(file: &Path) -> Result<Vec<Renamed>, CaseError> {
 fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     files.iter().try_for_each(|(name, text)| std::fs::write(folder.join(name), text))
+}
+
+fn not_written(folder: &Path, error: &std::io::Error) -> CaseError {
+    CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
+        .help("check that this program may write there")
+}
+
+/// Writes the manual pages of a command and its subcommands.
+pub fn man(command: clap::Command, folder: &Path, json: bool) -> u8 {
+    if let Err(error) = std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(command, folder)) {
+        return report(&not_written(folder, &error), json);
+    }
+    if json {
+        say!("{}", json!({"folder": folder.display().to_string()}));
+    } else {
+        say!("Manual pages are in {}.", folder.display());
+    }
+    DONE
 }
 
 /// Explains a key or a word, or lists all words.

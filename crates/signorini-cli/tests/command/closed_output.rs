@@ -39,6 +39,7 @@ fn arguments(command: &str) -> Option<(&'static [&'static str], i32)> {
         "verify" => (&["verify"], 130),
         "reproduce" => (&["reproduce"], 0),
         "completions" => (&["completions", "bash"], 0),
+        "man" => (&["man", "pages"], 0),
         "gallery" => (&["gallery"], 0),
         "gallery run" => (&["gallery", "run", "string", "-o", "example", "--set", "output.pictures=false"], 0),
         "gallery show" => (&["gallery", "show", "string"], 0),
@@ -106,6 +107,7 @@ fn a_reader_that_goes_away_ends_the_printing_and_nothing_else() {
             "gallery run" => "example/summary.json",
             "closest" => "answers.json",
             "new" => "begun/case.toml",
+            "man" => "pages/signorini-gallery-run.1",
             _ => continue,
         };
         assert!(folder.path().join(written).is_file(), "{name}: {written}");

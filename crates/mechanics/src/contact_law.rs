@@ -57,6 +57,8 @@ pub(crate) struct PointMeasure {
     pub base: Option<[f64; 3]>,
     /// Friction besides that of the trial about which the law is linearised.
     pub besides: [f64; 2],
+    /// Whether the law is linearised for a step of Newton's method.
+    pub linearises: bool,
 }
 
 /// Share of the limit of friction within which a point is at it, as what slipped is when the next increment starts. Either
@@ -145,8 +147,15 @@ impl ContactLaw {
         let trial = |i: usize| if slides[i] { lambda[i + 1] + c * measure.slip[i] } else { 0.0 };
         let point = LawPoint { per_gap: c, duration: self.duration() };
         let project = |trial: [f64; 3]| law.traction(trial, &point);
-        let about = |i: usize| if slides[i] { trial(i) + measure.besides[i] } else { 0.0 };
-        let mut projected = project([pressing, about(0), about(1)]);
+        let mut besides = measure.besides;
+        let about = |i: usize, besides: [f64; 2]| if slides[i] { trial(i) + besides[i] } else { 0.0 };
+        let mut projected = project([pressing, about(0, besides), about(1, besides)]);
+        // What slips one way does not slip back in the next step: it sticks first. Else steps send it to and fro.
+        let back = (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
+        if measure.linearises && besides == [0.0; 2] && projected.status == Status::Slip && back {
+            besides = [-trial(0), -trial(1)];
+            projected = project([pressing, 0.0, 0.0]);
+        }
         for i in (0..2).filter(|i| !slides[*i]) {
             projected.derivative.iter_mut().for_each(|row| row[i + 1] = 0.0);
         }
@@ -155,11 +164,10 @@ impl ContactLaw {
             let beyond = project([pressing, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
             (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
         }
-        if measure.besides != [0.0; 2] {
+        if besides != [0.0; 2] {
             let d = projected.derivative;
-            (0..2).for_each(|a| {
-                projected.traction[1 + a] -= d[1 + a][1] * measure.besides[0] + d[1 + a][2] * measure.besides[1]
-            });
+            let more = |a: usize| d[1 + a][1] * besides[0] + d[1 + a][2] * besides[1];
+            (0..2).for_each(|a| projected.traction[1 + a] -= more(a));
         }
         (projected, [trial(0), trial(1)])
     }

@@ -171,14 +171,15 @@ impl Mortar {
     }
 
     /// The traction of a node by its law.
-    fn traction(&self, k: usize, measure: &NodeMeasure, unknown: [f64; 3]) -> Projected {
+    fn traction(&self, k: usize, measure: &NodeMeasure, unknown: [f64; 3], linearises: bool) -> Projected {
         if !self.sees(k, measure.weight) {
             return Projected::default();
         }
         let slides = [1, 2].map(|slot| self.law.slots().contains(&slot));
         // What was not matched at the last state has no slip, and no friction yet.
         let slides = self.sees(k, measure.matched).then_some(slides);
-        let measure = PointMeasure { gap: measure.gap, slip: measure.slip, slides, ..PointMeasure::default() };
+        let measure =
+            PointMeasure { gap: measure.gap, slip: measure.slip, slides, linearises, ..PointMeasure::default() };
         self.law.traction(k, unknown, &measure).0
     }
 }

@@ -29,7 +29,7 @@ impl Contact {
         let find = |k: usize| {
             let at = self.law.multiplier(k, lambda);
             let is_closed = |touch: &MeasuredPair| {
-                linearises && self.traction(k, touch, at, [0.0; 2]).projected.status != Status::Open
+                linearises && self.traction(k, touch, at, ([0.0; 2], false)).projected.status != Status::Open
             };
             let farthest = self.closes_within(k, sides, at);
             self.pair(k, sides, (master.as_ref(), farthest), is_closed).1
@@ -58,7 +58,7 @@ impl Contact {
                     continue;
                 }
             };
-            let found = self.traction(k, &touch, at, redistributed);
+            let found = self.traction(k, &touch, at, (redistributed, linearises));
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             let on_slave = found.axes[0] * t1 + found.axes[1] * t2;

@@ -26,7 +26,7 @@ impl Contact {
             .map(|(k, touch)| {
                 let touch = touch.as_ref()?.as_ref().ok()?;
                 let at = self.law.multiplier(k, lambda);
-                let Traction { projected: found, trial, .. } = self.traction(k, touch, at, [0.0; 2]);
+                let Traction { projected: found, trial, .. } = self.traction(k, touch, at, ([0.0; 2], false));
                 if found.status == Status::Slip && at[1] * found.traction[1] + at[2] * found.traction[2] < 0.0 {
                     redistributed[k] = trial.map(|t| -t);
                     return None;

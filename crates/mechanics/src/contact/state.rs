@@ -21,7 +21,7 @@ impl Contact {
             let (x, radius) = (placed.x, placed.radius);
             let mut out = SiteResult { x, radius, weight: self.sites[k].weight, ..SiteResult::default() };
             let Some(Ok(touch)) = pair else { return (out, [0.0; 3]) };
-            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), [0.0; 2]);
+            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), ([0.0; 2], false));
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             out.normal = pair.normal;
@@ -62,7 +62,7 @@ impl Contact {
                 tractions.push([0.0; 3]);
                 continue;
             };
-            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), [0.0; 2]);
+            let found = self.traction(k, &touch, self.law.multiplier(k, lambda), ([0.0; 2], false));
             let pair = &touch.pair;
             let mut own = SiteMemory { stuck: pair.stuck, slip: [0.0; 2] };
             let mut traction = found.projected.traction;

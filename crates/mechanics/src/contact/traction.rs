@@ -17,13 +17,14 @@ pub(super) struct Traction {
 }
 
 impl Contact {
-    /// The traction by the law; linearised about a trial with as much more friction as is `redistributed` on to the site.
+    /// The traction by the law; linearised, where it is, about a trial with as much more friction as is
+    /// `redistributed` on to the site.
     pub(super) fn traction(
         &self,
         k: usize,
         touch: &MeasuredPair,
         unknown: [f64; 3],
-        redistributed: [f64; 2],
+        (redistributed, linearises): ([f64; 2], bool),
     ) -> Traction {
         let pair = &touch.pair;
         let has_friction = self.law.friction.is_some();
@@ -38,6 +39,7 @@ impl Contact {
             slides: Some(slides),
             base: touch.stress.as_ref().map(|s| s.base(&pair.normal, &axes)),
             besides: redistributed,
+            linearises,
         };
         let (projected, trial) = self.law.traction(k, unknown, &measure);
         Traction { projected, axes, d_axes, slip, trial }

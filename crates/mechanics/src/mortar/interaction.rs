@@ -46,7 +46,7 @@ const AT_ONCE: usize = 256;
 const NEAREST: f64 = 1e-9;
 
 impl Mortar {
-    fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64]) -> Result<Found<'a>, PlaceError> {
+    fn found<'a>(&self, at: Bodies<'a>, multipliers: &[f64], linearises: bool) -> Result<Found<'a>, PlaceError> {
         let sides = Sides::new(self, at)?;
         let (linear, measured, measures) = match &self.small {
             Some(small) => {
@@ -60,7 +60,7 @@ impl Mortar {
                 (None, measured, measures)
             }
         };
-        let of = |(k, measure)| self.traction(k, measure, self.law.multiplier(k, multipliers));
+        let of = |(k, measure)| self.traction(k, measure, self.law.multiplier(k, multipliers), linearises);
         let projected = measures.iter().enumerate().map(of).collect();
         Ok(Found { sides, measured, linear, measures, projected })
     }
@@ -198,7 +198,7 @@ impl Interaction for Mortar {
         own: InteractionUnknowns<'_>,
         out: &mut Assembler<'_>,
     ) -> Result<usize, PlaceError> {
-        let found = self.found(at, own.multipliers)?;
+        let found = self.found(at, own.multipliers, out.tangent.is_some())?;
         let assembly = Assembly { contact: self, own, measures: &found.measures, projected: &found.projected };
         assembly.add_nodes(out);
         let carried = assembly.carried();
@@ -210,11 +210,11 @@ impl Interaction for Mortar {
     }
 
     fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
-        Ok(self.node_results(&self.found(at, own.multipliers)?))
+        Ok(self.node_results(&self.found(at, own.multipliers, false)?))
     }
 
     fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
-        let found = self.found(at, own.multipliers)?;
+        let found = self.found(at, own.multipliers, false)?;
         let (mut memory, mut tractions) = (Vec::new(), Vec::new());
         for (k, (measure, projected)) in found.measures.iter().zip(&found.projected).enumerate() {
             let (face, s) = &self.places[k];
@@ -271,7 +271,7 @@ impl Interaction for Mortar {
         around: OuterIteration,
     ) -> Result<f64, PlaceError> {
         let tractions = match self.law.takes_over() {
-            true => self.found(at, own.multipliers)?.projected.iter().map(|p| p.traction).collect(),
+            true => self.found(at, own.multipliers, false)?.projected.iter().map(|p| p.traction).collect(),
             false => Vec::new(),
         };
         Ok(self.law.augment(found, &around, &tractions))
@@ -308,7 +308,7 @@ impl Iterated for Mortar {
     /// A body that only contact holds is pressed on it first where the gap is least.
     fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Option<Vec<f64>> {
         let mut out = self.law.multipliers();
-        let found = self.found(at, &out).ok()?;
+        let found = self.found(at, &out, false).ok()?;
         let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
         let near = NEAREST * at.bodies[self.slave.body].size();
         let force = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
@@ -319,7 +319,7 @@ impl Iterated for Mortar {
     }
 
     fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
-        let found = self.found(at, &self.law.multipliers()).ok()?;
+        let found = self.found(at, &self.law.multipliers(), false).ok()?;
         self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
     }
 
@@ -357,7 +357,7 @@ impl Passing for Mortar {
 
 impl Drawn for Mortar {
     fn surface(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Option<ShownSurface>, PlaceError> {
-        let found = self.found(at, own.multipliers)?;
+        let found = self.found(at, own.multipliers, false)?;
         let (slave, results) = (found.sides.slave.as_ref(), self.node_results(&found));
         let points = found.measured.as_ref();
         let zone = zone_of(&self.nodes, slave.faces().0, points, &results);

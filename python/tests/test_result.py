@@ -118,7 +118,10 @@ def test_a_bar_is_shown():
 
 
 SCRIPT = """
+import signal
 import signorini as sg
+# A shell without job control starts processes in the background with this signal ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 problem = sg.gallery("cosine_disc")
 problem.steps = [sg.Step(to=1, increments=100000)]
 print("begins", flush=True)

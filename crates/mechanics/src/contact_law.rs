@@ -151,7 +151,8 @@ impl ContactLaw {
         let about = |i: usize, besides: [f64; 2]| if slides[i] { trial(i) + besides[i] } else { 0.0 };
         let mut projected = project([pressing, about(0, besides), about(1, besides)]);
         // What slips one way does not slip back in the next step: it sticks first. Else steps send it to and fro.
-        let back = (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
+        // The friction of what pulls in an iterate tells no direction.
+        let back = unknown[0] > 0.0 && (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
         if measure.linearises && besides == [0.0; 2] && projected.status == Status::Slip && back {
             besides = [-trial(0), -trial(1)];
             projected = project([pressing, 0.0, 0.0]);

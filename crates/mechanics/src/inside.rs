@@ -33,6 +33,15 @@ pub(crate) fn at_start(master: &dyn Master, sites: &[SlavePoint], size: f64) -> 
     unseen(master, sites).or(all.filter(|found| found.depth > INTERFERENCE * size))
 }
 
+/// The deepest of balls in a state at the start that is no interference any more, of a body of a given size.
+pub(crate) fn balls_at_start(master: &dyn Master, sites: &[SlavePoint], size: f64) -> Option<Inside> {
+    let of = |placed: &SlavePoint| {
+        let (gap, _) = master.nearest(&placed.x, f64::INFINITY, None)?.gap(&placed.x)?;
+        Some(Inside { depth: placed.radius - gap, x: placed.x })
+    };
+    deepest(sites.iter().filter_map(of)).filter(|found| found.depth > INTERFERENCE * size)
+}
+
 fn deepest(list: impl Iterator<Item = Inside>) -> Option<Inside> {
     list.max_by(|a, b| a.depth.total_cmp(&b.depth))
 }

@@ -242,11 +242,13 @@ impl<'a> Bodies<'a> {
         is_start: bool,
     ) -> Result<Option<Inside>, PlaceError> {
         let (body, state) = self.side(master);
-        if !body.is_rigid() || slave.body == master.body || sites.iter().all(|s| s.outward.is_none()) {
+        let are_balls = sites.iter().all(|s| s.outward.is_none());
+        if !body.is_rigid() || slave.body == master.body || (are_balls && !(is_start && self.bodies[slave.body].is_rigid())) {
             return Ok(None);
         }
         let met = body.master(master.group.as_deref(), state)?;
         Ok(match is_start {
+            true if are_balls => inside::balls_at_start(met.as_ref(), sites, self.bodies[slave.body].size()),
             true => inside::at_start(met.as_ref(), sites, self.bodies[slave.body].size()),
             false => inside::unseen(met.as_ref(), sites),
         })

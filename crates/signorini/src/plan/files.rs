@@ -29,7 +29,7 @@ impl Planner<'_> {
         }
         let origin = key.origin.as_ref().map(|o| self.reader.numbers::<2>(o, LENGTH)).transpose()?.unwrap_or_default();
         let scale = key.scale.as_ref().map(|s| self.reader.number(s, LENGTH)).transpose()?.unwrap_or(1.0);
-        let angle = key.rotate.as_ref().map(|t| self.reader.number(t, NONE)).transpose()?.unwrap_or(0.0);
+        let angle = key.rotate.as_ref().map(|t| self.reader.angle(t)).transpose()?.unwrap_or(0.0);
         let moved =
             key.translate.as_ref().map(|m| self.reader.numbers::<3>(m, LENGTH)).transpose()?.unwrap_or_default();
         let height = crate::height_map::read(&path, &bytes, [0.0; 2], spacing, scale)

@@ -286,20 +286,6 @@ impl Planner<'_> {
         Ok(friction)
     }
 
-    /// An angle: in radians, or in degrees with the word.
-    fn angle(&self, value: &Value) -> Result<f64, CaseError> {
-        if let Value::Text(text) = value
-            && let Some(number) = text.trim_end().strip_suffix("deg").or_else(|| text.trim_end().strip_suffix('°'))
-        {
-            let degrees: f64 = number.trim().parse().map_err(|_| {
-                let message = format!("`{}` is not an angle in degrees", number.trim());
-                self.problem.error(value, message).help("give radians, or for example \"25 deg\"")
-            })?;
-            return Ok(degrees.to_radians());
-        }
-        self.reader.number(value, NONE)
-    }
-
     fn winding(&self, name: &str, key: &Winding) -> Result<PlannedWinding, CaseError> {
         let problem = self.problem;
         let length = |value: &Option<Value>| value.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose();
@@ -345,8 +331,8 @@ impl Planner<'_> {
             body: self.path_body(&key.on, &key.on)?,
             start: [
                 self.reader.number(&key.start.z, LENGTH)?,
-                key.start.theta.as_ref().map_or(Ok(0.0), |v| self.angle(v))?,
-                self.angle(&key.start.angle)?,
+                key.start.theta.as_ref().map_or(Ok(0.0), |v| self.reader.angle(v))?,
+                self.reader.angle(&key.start.angle)?,
             ],
             slippage,
             friction: key.friction.as_ref().map(|v| self.reader.positive(v, NONE)).transpose()?,

@@ -33,7 +33,7 @@ impl Planner<'_> {
                     .help("in the plane one angle, in space a rotation vector, in radians"));
             }
             for (k, component) in turn.0.iter().enumerate() {
-                rotation[if D == 2 { 2 } else { k }] = self.reader.number(component, NONE)?;
+                rotation[if D == 2 { 2 } else { k }] = self.reader.angle(component)?;
             }
         }
         let shift = Vector::<3>::from_fn(|k, _| if k < D { shift[k] } else { 0.0 });

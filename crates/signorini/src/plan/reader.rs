@@ -1,7 +1,7 @@
 //! Values as expressions in base units.
 
 use crate::expression::{Expression, Names, parse};
-use crate::problem::units::{Dimension, Units, describe, is_unit};
+use crate::problem::units::{Dimension, NONE, Units, describe, is_unit};
 use crate::problem::{CaseError, KeyPath, List, Problem, ProblemPart, Value};
 use crate::relief::Sampled;
 use std::cell::RefCell;
@@ -129,6 +129,23 @@ impl Reader<'_> {
             return Ok(number);
         }
         Err(self.error(value, format!("the value is {number}, not a finite number")))
+    }
+
+    /// A value that must be an angle: in radians, or in degrees with the word.
+    ///
+    /// # Errors
+    /// Those of [`Self::number`].
+    pub fn angle(&self, value: &Value) -> Result<f64, CaseError> {
+        if let Value::Text(text) = value
+            && let Some(number) = text.trim_end().strip_suffix("deg").or_else(|| text.trim_end().strip_suffix('°'))
+        {
+            let degrees: f64 = number.trim().parse().map_err(|_| {
+                let message = format!("`{}` is not an angle in degrees", number.trim());
+                self.error(value, message).help("give radians, or for example \"25 deg\"")
+            })?;
+            return Ok(degrees.to_radians());
+        }
+        self.number(value, NONE)
     }
 
     /// A value that must be a positive number.

@@ -298,8 +298,10 @@ fn rope_limits((contact, tested): (&dyn Interaction, &ContactInfo), sites: &[Sit
         AxisChoice::OnSlave(_) | AxisChoice::Material if along != across => return None,
         _ => Friction::Carried { along, across },
     };
-    let list: Vec<(Darboux, f64)> =
-        frames(sites).into_iter().zip(sites).filter_map(|(frame, site)| Some((frame?, site.weight))).collect();
+    // Friction acts at the surface, tension on the centre line: of a thick rope a part of the lever arm only.
+    let thick = |frame: &Darboux, site: &SiteResult| site.weight * (1.0 + site.radius * frame.k_n).max(0.0);
+    let of_site = |(frame, site): (Option<Darboux>, &SiteResult)| frame.map(|frame| (frame, thick(&frame, site)));
+    let list: Vec<(Darboux, f64)> = frames(sites).into_iter().zip(sites).filter_map(of_site).collect();
     let found = limits_of_points(&list, &friction).ok()?;
     let worst = list.iter().find(|(frame, _)| frame.s == found.steepest.s)?;
     let (tan_alpha, lateral) = (found.steepest.value, friction.lateral(&worst.0));

@@ -43,7 +43,7 @@ fn each_mistake_is_told_at_its_place() {
         ("hertz", "\"-0.085*t\"", "\"-0.085/(t-t)\"", "not a finite number", "\"-0.085/(t-t)\"", ""),
         ("hertz", "normal = [0, 1]", "normal = [0, 0]", "vector is zero", "[0, 0]", ""),
         ("hertz", "normal = [0, 1]", "normal = [0, -1]", "deep inside `plane`", "[contacts.touch]", "normal"),
-        ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "axes", "positive volume"),
+        ("hertz", "map = [\"x\", ", "map = [\"-x\", ", "inverted", "box", "positive volume"),
         ("hertz", "cells = [15, 16]", "cells = [15]", "`cells` 1", "{ from", ""),
         ("hertz", "[\"block:bottom\", \"plane\"]", "[\"plane\", \"plane\"]", "names `plane` twice", "plane", ""),
         (

@@ -173,18 +173,20 @@ impl ContactLaw {
         (projected, [trial(0), trial(1)])
     }
 
-    /// Adds the equations of a point, without what other unknowns change in them; `row` is the number of the first.
+    /// Adds the equations of a point, without what other unknowns change in them; `row` is the number of the first. A point of
+    /// which nothing is known carries nothing.
     pub(crate) fn add_equations(
         &self,
         k: usize,
         row: u32,
         unknown: [f64; 3],
-        projected: &Projected,
+        projected: Option<&Projected>,
         out: &mut Assembler<'_>,
     ) {
         let scale = self.areas[k] / self.stiffness[k];
-        // Tractions that nothing determines stay where they are; those of open points are to vanish.
-        let resists = if projected.status == Status::Open { 1.0 } else { 1.0 + UNDETERMINED };
+        // Tractions that nothing determines stay where they are.
+        let resists = if projected.is_some() { 1.0 + UNDETERMINED } else { 1.0 };
+        let projected = projected.copied().unwrap_or_default();
         for (i, &slot) in (0u32..).zip(self.slots()) {
             let traction = projected.traction[slot];
             out.residual[(row + i) as usize] += scale * (traction - unknown[slot]);

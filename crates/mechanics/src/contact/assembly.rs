@@ -7,7 +7,6 @@ use crate::pair::NoPair;
 use crate::points::Sampling;
 use rayon::prelude::*;
 use signorini_contact::Status;
-use signorini_contact::law::Projected;
 
 impl Contact {
     /// Adds the contact to residual and tangent. `lambda` are its own unknowns, if it has any, and `first` the number of
@@ -54,7 +53,7 @@ impl Contact {
                 Some(Ok(touch)) => touch,
                 found => {
                     lost += usize::from(matches!(found, Some(Err(NoPair::NoCoordinates))));
-                    self.law.add_equations(k, own(0), at, &Projected::default(), out);
+                    self.law.add_equations(k, own(0), at, None, out);
                     continue;
                 }
             };
@@ -69,7 +68,7 @@ impl Contact {
                 out.residual[unknown as usize] += force;
                 out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + has_friction.abs();
             }
-            self.law.add_equations(k, own(0), at, &found.projected, out);
+            self.law.add_equations(k, own(0), at, Some(&found.projected), out);
             let Some(tangent) = out.tangent.as_mut().filter(|_| found.projected.status != Status::Open) else {
                 continue;
             };

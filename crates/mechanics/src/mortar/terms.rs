@@ -81,7 +81,7 @@ impl<'a> Assembly<'a> {
     pub fn add_nodes(&self, out: &mut Assembler<'_>) {
         for (node, projected) in (0u32..).zip(self.projected) {
             let row = self.row(node, 0);
-            self.contact.law.add_equations(node as usize, row, self.traction(node), projected, out);
+            self.contact.law.add_equations(node as usize, row, self.traction(node), Some(projected), out);
         }
     }
 

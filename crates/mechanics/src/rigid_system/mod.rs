@@ -31,8 +31,8 @@ impl System {
     /// Whether all that moves is rigid and touches in points, with friction that knows no time.
     pub fn is_rigid(&self) -> bool {
         let suits = |c: &Contact| {
-            let by_state = |law: &Box<dyn Law>| law.is_rate_dependent() || law.is_compliant();
-            let by_state = c.law.friction.as_ref().is_some_and(by_state);
+            let by_state = |law: &dyn Law| law.is_rate_dependent() || law.is_compliant();
+            let by_state = c.law.friction.as_deref().is_some_and(by_state);
             c.law.enforcement == Enforcement::AugmentedLagrangian && !by_state && self.bodies[c.master.body].is_rigid()
         };
         self.bodies.iter().all(|b| b.is_rigid())

@@ -2,7 +2,7 @@
 
 use super::placement::PlacementKeys;
 use super::planner::Planner;
-use crate::problem::units::{LENGTH, NONE};
+use crate::problem::units::LENGTH;
 use crate::problem::{self, CaseError, Location};
 use crate::relief::{MovedHeight, Sampled};
 use crate::report::Warning;

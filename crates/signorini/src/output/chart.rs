@@ -1,5 +1,7 @@
 //! Drawing: SVG by `plotters`, PNG from the same SVG by `resvg`, with a font that travels along.
 
+use super::animation::{Shown, gif, webp};
+use super::pdf::pdf;
 use super::{Folder, OutputError, atomic};
 use base64::Engine as _;
 use plotters::coord::Shift;
@@ -42,15 +44,102 @@ pub fn save(folder: &Folder, name: &str, svg: &str) -> Result<(), OutputError> {
     folder.write(&format!("pictures/{name}.png"), &png(svg)?)
 }
 
-/// Writes one picture into a file, whole or not at all: as SVG or PNG, as its extension says.
+/// A file format of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Png,
+    Svg,
+    Pdf,
+    Gif,
+    WebP,
+    /// An animated PNG.
+    Apng,
+}
+
+impl Format {
+    /// All formats with the extensions of their files.
+    const ALL: [(&'static str, Format); 6] = [
+        ("png", Format::Png),
+        ("svg", Format::Svg),
+        ("pdf", Format::Pdf),
+        ("gif", Format::Gif),
+        ("webp", Format::WebP),
+        ("apng", Format::Apng),
+    ];
+
+    /// The format that the extension of a file says.
+    ///
+    /// # Errors
+    /// Another extension; the message lists those that are valid.
+    pub fn of(path: &std::path::Path) -> Result<Self, OutputError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let known = Self::ALL.iter().find(|(name, _)| *name == extension).map(|f| f.1);
+        known.ok_or_else(|| {
+            let what = match extension.as_str() {
+                "" => format!("the file `{}` has no extension that says its format", path.display()),
+                other => format!("`{other}` is not a picture format"),
+            };
+            let names: Vec<&str> = Self::ALL.iter().map(|f| f.0).collect();
+            failed(format!("{what}; valid are {}", names.join(", ")))
+        })
+    }
+
+    /// Whether it can hold pictures at several times.
+    pub fn moves(self) -> bool {
+        matches!(self, Format::Gif | Format::WebP | Format::Apng)
+    }
+}
+
+/// Writes one picture into a file, whole or not at all, in the format that its extension says.
+///
+/// # Errors
+/// An unknown extension, a picture that cannot be drawn, a file that cannot be written.
 pub fn save_as(path: &std::path::Path, svg: &str) -> Result<(), OutputError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let bytes = match extension.as_str() {
-        "svg" => svg.as_bytes().to_vec(),
-        "png" => png(svg)?,
-        other => return Err(failed(format!("`{other}` is not a picture format; valid are png and svg"))),
-    };
+    let bytes = still(Format::of(path)?, svg, None)?;
     atomic::write(path, &bytes).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
+}
+
+/// A picture in a format; `zoom` is the number of pixels per unit, chosen for a screen if left out.
+///
+/// # Errors
+/// A picture that cannot be drawn.
+pub fn still(format: Format, svg: &str, zoom: Option<f32>) -> Result<Vec<u8>, OutputError> {
+    Ok(match (format, zoom) {
+        (Format::Svg, _) => svg.as_bytes().to_vec(),
+        (Format::Pdf, _) => pdf(&usvg::Tree::from_str(svg, options()).map_err(failed)?)?,
+        (Format::Png, None) => png(svg)?,
+        (Format::Png, Some(zoom)) => encoded(&rendered(svg, zoom)?)?,
+        (Format::Gif | Format::WebP | Format::Apng, _) => {
+            moving(format, &[Shot { svg: svg.to_string(), shown: 0 }], zoom.unwrap_or(ZOOM))?
+        }
+    })
+}
+
+/// Pictures of one size in a row, in a format that can hold them.
+///
+/// # Errors
+/// Pictures that cannot be drawn, and a format of single pictures.
+pub fn moving(format: Format, shots: &[Shot], zoom: f32) -> Result<Vec<u8>, OutputError> {
+    if format == Format::Apng {
+        return animation(shots, zoom);
+    }
+    let drawn: Vec<([u32; 2], Shown)> = (shots.par_iter())
+        .map(|shot| {
+            let (width, height, rgba) = pixels(&shot.svg, zoom)?;
+            let rgb = rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+            Ok(([width, height], Shown { rgb, milliseconds: shot.shown }))
+        })
+        .collect::<Result<_, OutputError>>()?;
+    let Some(size) = drawn.first().map(|d| d.0) else { return Err(failed("there is nothing to show")) };
+    if drawn.iter().any(|d| d.0 != size) {
+        return Err(failed("the pictures of an animation differ in size"));
+    }
+    let shown: Vec<Shown> = drawn.into_iter().map(|d| d.1).collect();
+    match format {
+        Format::Gif => gif(size, &shown),
+        Format::WebP => webp(size, &shown),
+        _ => Err(failed("the format holds one picture only")),
+    }
 }
 
 fn options() -> &'static usvg::Options<'static> {

@@ -153,8 +153,17 @@ struct Sample {
 /// # Errors
 /// A page without area.
 pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, OutputError> {
+    render_finer(bodies, camera, look, 1.0)
+}
+
+/// The same with `finer` times as many pixels along each side.
+///
+/// # Errors
+/// A page without area.
+pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) -> Result<Image, OutputError> {
     let [left, top, right, bottom] = camera.area;
     let (dense, samples) = density(look);
+    let dense = dense * finer;
     let pixels = |length: f64| (length * dense).round().max(1.0) as usize;
     let (width, height) = (pixels(right - left), pixels(bottom - top));
     // The change of depth between samples of a surface at 80 degrees.
@@ -167,7 +176,7 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
             continue;
         }
         let mut layer = vec![Sample::default(); width * height * samples * samples];
-        own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, look));
+        own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, (look, dense * samples as f64)));
         layers.push(if look == Look::Map {
             layer
         } else {
@@ -224,9 +233,16 @@ pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) ->
 }
 
 /// Puts a body into a layer wherever it is in front.
-fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, look: Look) {
-    let (dense, samples) = density(look);
-    let zoom = dense * samples as f64;
+///
+/// The zoom is the number of samples per unit of the page.
+fn rasterise(
+    layer: &mut [Sample],
+    width: usize,
+    body: &Body,
+    number: u16,
+    camera: &Camera,
+    (look, zoom): (Look, f64),
+) {
     let height = layer.len() / width;
     let place: Vec<[f64; 3]> = (body.points.iter())
         .map(|p| {

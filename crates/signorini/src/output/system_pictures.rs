@@ -8,7 +8,9 @@ use super::page::sheet;
 use super::render::Look;
 use super::section_forces::diagrams;
 use super::system::{ContactShown, SystemShown};
-use super::system_scene::{Rigid, View, around_contact, facing_contact, scene, titled};
+use super::system_scene::{
+    Forces, Rigid, View, around_contact, around_largest, around_loops, facing_contact, scene, titled,
+};
 use super::{
     Folder, OutputError, film, history, pressure_map, pressure_profile, system_contacts, system_cut, system_plane,
 };
@@ -42,7 +44,12 @@ pub fn draw(
     let mut shown = shown.clone();
     shown.magnify(factor);
     frames.iter_mut().for_each(|frame| frame.magnify(factor));
-    let view = View { note: note(&shown, factor), ..View::of(plan, &shown) };
+    let mut view = View { note: note(&shown, factor), ..View::of(plan, &shown) };
+    if plan.space == Space::ThreeD && facing_contact(&shown).is_some() {
+        // They are drawn in a picture from the side from which they are seen.
+        view.forces = Forces::LeftOut;
+    }
+    let view = view;
     let mut drawn = vec![("deformed".to_string(), scene(plan, &shown, &view, &titled(&view.what, shown.time))?)];
     drawn.extend(contact_zone(plan, &shown, &view)?);
     drawn.extend(system_cut::cut(plan, &shown, &view)?.map(|picture| ("cut".into(), picture)));
@@ -90,14 +97,18 @@ fn contact_zone(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Resul
         // Not beyond what the whole picture shows.
         *frame = [frame[0].sup(&view.room[0]), frame[1].inf(&view.room[1])];
     }
-    let small = around.filter(|frame| size(*frame) < SMALL * size(shown.bounds()));
+    let is_small = |frame: &[Vector<3>; 2]| size(*frame) < SMALL * size(shown.bounds());
+    // Of curves with the loops between what touches, or else a part of a zone that is long.
+    let close = around_loops(shown).filter(is_small).or(around.filter(is_small));
+    let small = close.or_else(|| around_largest(shown).filter(|_| in_space).filter(is_small));
     if small.is_some() || (around.is_some() && averted.is_some()) {
         let mut zone = View { note: "contact zone".into(), ..View::of(plan, shown) };
         if let Some(frame) = small {
             zone = near(frame, zone);
         }
         if let Some(from) = averted {
-            let note = "contact zone, without rigid bodies".into();
+            let below = if from.z < 0.0 { " from below" } else { "" };
+            let note = format!("contact zone{below}, without rigid bodies");
             zone = View { from, rigid: Rigid::LeftOut, note, ..zone };
         }
         out.push(("contact".into(), scene(plan, shown, &zone, &title)?));

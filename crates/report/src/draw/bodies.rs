@@ -3,6 +3,7 @@
 use super::field::Field;
 use super::wanted::Clip;
 use crate::pieces::{Look, Piece};
+use signorini::output::camera::bounds;
 use signorini::output::colours::{FREE, FRONT, RIGID};
 use signorini::output::level::level;
 use signorini::output::render::{Body, Paint};
@@ -13,8 +14,9 @@ use signorini_geometry::Vector;
 const THIN: f64 = 0.006;
 /// How much bodies hide of the surfaces of contact between them.
 const GLASS: f64 = 0.25;
-/// How much a rigid body hides of what is behind it, as in the pictures of runs.
-const VEIL: f64 = 0.4;
+/// How much a rigid body hides of what is behind it, as in the pictures of runs: around solids, and around curves.
+const THIN_VEIL: f64 = 0.4;
+const VEIL: f64 = 0.75;
 
 /// How pieces become bodies.
 pub struct Shape<'a> {
@@ -28,6 +30,18 @@ pub struct Shape<'a> {
     pub room: [Vector<3>; 2],
     /// Whether bodies lie in the plane.
     pub is_flat: bool,
+    /// Opacity of rigid bodies in space.
+    pub veil: f64,
+}
+
+/// The opacity of rigid bodies in space beside those of a state; alone they are opaque.
+pub fn veil(pieces: &[Piece]) -> f64 {
+    let has = |look: Look| pieces.iter().any(|p| p.look == look);
+    match (has(Look::Solid) || has(Look::Membrane), has(Look::Curve)) {
+        (true, _) => THIN_VEIL,
+        (false, true) => VEIL,
+        (false, false) => 1.0,
+    }
 }
 
 /// What is drawn of a state. The paint of bodies with a field holds its values as they are.
@@ -99,7 +113,7 @@ impl Shape<'_> {
         let plain = if piece.look == Look::Rigid { RIGID } else { FREE };
         let paint = values.as_ref().map_or(Paint::Plain(plain), |values| Paint::Field(values.clone()));
         let opacity = match piece.look {
-            Look::Rigid if !self.is_flat => VEIL,
+            Look::Rigid if !self.is_flat => self.veil,
             Look::Solid | Look::Membrane if of_contact && !self.is_flat => GLASS,
             _ => 1.0,
         };
@@ -159,7 +173,9 @@ impl Shape<'_> {
         for (_, clip) in self.clips.iter().enumerate().filter(|(k, _)| Some(*k) != but) {
             body = body.clipped(|x, _| clip.height(x));
         }
-        if look == Look::Rigid {
+        let [low, high] = bounds(body.seen());
+        // Of a body no larger than what deforms, all is shown.
+        if look == Look::Rigid && (high - low).norm() > self.size {
             for k in 0..3 {
                 body = body.clipped(|x, _| x[k] - self.room[0][k]);
                 body = body.clipped(|x, _| self.room[1][k] - x[k]);

@@ -46,10 +46,12 @@ impl Field {
             Some(key) => known.iter().find(|k| *k == key),
             None => first(&known, frames, context),
         };
-        let (Some(found), _) = (found, ()) else {
+        let Some(found) = found else {
             let Some(name) = name else { return Ok(None) };
             let list: Vec<&str> = known.iter().map(String::as_str).collect();
-            let near = suggestion(&key.unwrap_or_default(), &list);
+            let key = key.unwrap_or_default();
+            let part = list.iter().find(|known| !key.is_empty() && known.contains(&key));
+            let near = part.map_or_else(|| suggestion(&key, &list), |known| format!("did you mean `{known}`?"));
             let all = format!("the fields of these results are {}; or {NONE}", list.join(", "));
             let help = if near.starts_with("did") { format!("{near} {all}") } else { all };
             return Err(wrong(format!("there is no field `{name}` in these results"), help));
@@ -85,9 +87,10 @@ impl Field {
             "von_mises" => "σ",
             "contact_pressure" => "p",
             "displacement" => "u",
-            "displacement_x" => "uₓ",
+            "displacement_x" => "u x",
             "displacement_y" => "u y",
             "displacement_z" => "u z",
+            "normal_force" => "normal force",
             "friction_traction" => "friction",
             "axial_force" => "axial force",
             "shear_force" => "shear force",
@@ -130,7 +133,11 @@ fn names(frames: &[Vec<Piece>]) -> BTreeSet<String> {
 
 /// The field that a reader wants to see first: of those that are not zero everywhere.
 fn first<'a>(known: &'a BTreeSet<String>, frames: &[Vec<Piece>], context: &Context) -> Option<&'a String> {
-    let is_shown = |name: &str| largest(name, frames) > 0.0 && named(name, context.units, context.carries).is_some();
+    let is_named = |name: &str| named(name, context.units, context.carries).is_some();
+    // Arrows have no colours.
+    let bodies = || frames.iter().flatten().filter(|p| p.look != Look::Arrows && p.look != Look::Pair);
+    let is_seen = |name: &str| bodies().filter_map(|p| values(name, p)).flatten().any(|v| v != 0.0);
+    let is_shown = |name: &str| is_named(name) && is_seen(name);
     let wanted = WANTED.iter().filter_map(|name| known.get(*name)).find(|name| is_shown(name));
     wanted.or_else(|| known.get("displacement"))
 }

@@ -16,7 +16,7 @@ use crate::pieces::{Look, Names, Piece, pieces};
 use crate::scene::{Context, Extent, Scene, grow_arrows};
 use crate::sections::answers;
 use crate::view::view;
-use bodies::{Shape, State};
+use bodies::{Shape, State, veil};
 use field::Field;
 use rayon::prelude::*;
 use signorini::output::atomic;
@@ -80,6 +80,7 @@ pub fn draw(folder: &Path, wanted: &Wanted, format: Format) -> Result<Drawn, Rep
         size,
         room: [Vector::<3>::from(scene.low) - pad, Vector::<3>::from(scene.high) + pad],
         is_flat,
+        veil: frames.iter().map(|pieces| veil(pieces)).fold(1.0, f64::min),
     };
     let shape = Shape { room: room(&shape), ..shape };
     let states: Vec<State> = frames.par_iter().map(|pieces| shape.state(pieces)).collect();
@@ -111,6 +112,7 @@ pub fn draw(folder: &Path, wanted: &Wanted, format: Format) -> Result<Drawn, Rep
         length: context.units.map_or(String::new(), |u| u.length.clone()),
         deformable: frames.iter().flatten().any(|p| matches!(p.look, Look::Solid | Look::Membrane | Look::Curve)),
         is_axisymmetric: is_axisymmetric(results.case.as_deref()),
+        heights: if shape.is_of_heights { shape.factor } else { 1.0 },
     };
     let (svgs, zoom) = sheet.draw(&states, &times)?;
     let bytes = if svgs.len() == 1 {

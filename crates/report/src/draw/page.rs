@@ -24,6 +24,8 @@ const PIXELS: f64 = 1.25;
 const LIFT: f64 = 1e-3;
 /// Length and half the width of the tip of an arrow.
 const TIP: [f64; 2] = [9.0, 3.6];
+/// Least distance of the feet of two arrows: that their tips are told apart.
+const APART: f64 = 8.0;
 
 /// What pages have in common.
 pub struct Sheet {
@@ -43,6 +45,8 @@ pub struct Sheet {
     /// Whether something deforms: rigid bodies alone are no background.
     pub deformable: bool,
     pub is_axisymmetric: bool,
+    /// By which heights are multiplied.
+    pub heights: f64,
 }
 
 /// What all pages show of space.
@@ -131,13 +135,17 @@ impl Sheet {
         }
         let first = if self.is_axisymmetric { "r" } else { "x" };
         let name = |axis: &str| if self.length.is_empty() { axis.into() } else { format!("{axis} [{}]", self.length) };
-        let names: [String; 3] = [first, "y", "z"].map(name);
+        let mut names: [String; 3] = [first, "y", "z"].map(name);
+        if self.heights != 1.0 {
+            names[2] += &format!(" × {}", label(self.heights));
+        }
         camera.axes(&mut page.svg, frame.axes, names.each_ref().map(String::as_str));
         let mut key: Vec<(Sign, String)> = Vec::new();
         if self.deformable {
             let mut names = state.rigid.clone();
             names.dedup();
-            key.extend(names.into_iter().map(|name| (Sign::Area(RIGID), name)));
+            let sign = if state.bodies.iter().any(is_rigid) { Sign::Area(RIGID) } else { Sign::Line(EDGE) };
+            key.extend(names.into_iter().map(|name| (sign, name)));
         }
         if state.has_outline {
             key.push((Sign::Line(FRONT), "edge of contact".into()));
@@ -189,12 +197,14 @@ fn lines(svg: &mut String, camera: &Camera, edges: &[[Vector<3>; 2]]) {
 /// Forces, each from its point on.
 fn arrows(svg: &mut String, camera: &Camera, list: &[[Vector<3>; 2]]) {
     let colour = css(FRONT);
+    let mut feet: Vec<(f64, f64)> = Vec::new();
     for ends in list {
         let [(x, y), (u, v)] = ends.each_ref().map(|p| camera.at(p));
         let length = (u - x).hypot(v - y);
-        if length < 1.0 {
+        if length < 1.0 || feet.iter().any(|(a, b)| (a - x).hypot(b - y) < APART) {
             continue;
         }
+        feet.push((x, y));
         let (a, b) = ((u - x) / length, (v - y) / length);
         let [long, wide] = TIP.map(|size| size * (length / TIP[0]).min(1.0));
         let (p, q) = (u - long * a, v - long * b);

@@ -154,12 +154,16 @@ impl Shape<'_> {
             }
             return;
         }
-        let values = self.field.and_then(|f| f.values(piece)).filter(|v| v.iter().all(|v| v.is_finite()));
-        let paint = match values {
-            Some(values) if !of_contact => Paint::Field(values),
-            _ => Paint::Plain(if of_contact { FRONT } else { FREE }),
-        };
-        out.bodies.push(self.kept(tube(&points, &cells, thick * self.size, paint), piece.look, None));
+        let values = self.field.and_then(|f| f.values(piece)).filter(|_| !of_contact);
+        let plain = Paint::Plain(if of_contact { FRONT } else { FREE });
+        // Points without a value have no colour.
+        let known = |c: &[u32; 2]| values.as_ref().is_some_and(|v| c.iter().all(|&k| v[k as usize].is_finite()));
+        for (is_known, paint) in [(true, values.clone().map_or(plain.clone(), Paint::Field)), (false, plain.clone())] {
+            let own: Vec<[u32; 2]> = cells.iter().copied().filter(|c| known(c) == is_known).collect();
+            if !own.is_empty() {
+                out.bodies.push(self.kept(tube(&points, &own, thick * self.size, paint), piece.look, None));
+            }
+        }
     }
 
     /// Forces at points, as lines from there to their tips.
@@ -212,7 +216,8 @@ impl Shape<'_> {
     fn ends(&self, piece: &Piece, points: &[Vector<3>], out: &mut State) {
         let fields = signorini::fields::Fields {
             name: String::new(),
-            points: points.iter().map(|x| [x.x, x.y, x.z]).collect(),
+            // Before they are moved: what lies on a straight edge does so no longer.
+            points: piece.points.clone(),
             cells: piece.topology.triangles.chunks_exact(3).map(|t| (None, t.to_vec())).collect(),
             arrays: Vec::new(),
         };

@@ -29,6 +29,7 @@ pub(crate) mod system_bodies;
 mod system_contacts;
 mod system_cut;
 pub mod system_files;
+mod system_marks;
 mod system_names;
 pub mod system_pictures;
 mod system_plane;

@@ -8,8 +8,9 @@ use super::page::sheet;
 use super::render::Look;
 use super::section_forces::diagrams;
 use super::system::{ContactShown, SystemShown};
+use super::system_marks::marks;
 use super::system_scene::{
-    Forces, Rigid, View, around_contact, around_largest, around_loops, facing_contact, scene, titled,
+    Forces, Rigid, View, around_contact, around_largest, around_loops, facing_contact, marked_scene, scene, titled,
 };
 use super::{
     Folder, OutputError, film, history, pressure_map, pressure_profile, system_contacts, system_cut, system_plane,
@@ -180,6 +181,6 @@ fn note(shown: &SystemShown, factor: f64) -> String {
 /// A picture that cannot be drawn.
 pub fn preview(plan: &MechanicsPlan) -> Result<String, OutputError> {
     let shown = SystemShown::of_bodies(plan, &plan.system.start().bodies);
-    let view = View { note: "at the start".into(), ..View::of(plan, &shown) };
-    scene(plan, &shown, &view, plan.head.problem.name())
+    let view = View { note: "at the start; loads as they are at the end".into(), ..View::of(plan, &shown) };
+    marked_scene(plan, &shown, &view, plan.head.problem.name(), &marks(plan))
 }

@@ -8,6 +8,7 @@ use super::page::{Page, SIZE, Scale, Sign, clip_to, text_width};
 use super::render::{Body, Look, insert};
 use super::system::SystemShown;
 use super::system_bodies::{deformable, rigid, scale_of};
+use super::system_marks::{self, Mark};
 use super::{OutputError, system_contacts, system_names, system_plane};
 use crate::plan::mechanics::MechanicsPlan;
 use crate::problem::Space;
@@ -153,6 +154,20 @@ pub fn page_for<'a>(
 /// # Errors
 /// A raster without area.
 pub fn scene(plan: &MechanicsPlan, shown: &SystemShown, view: &View, title: &str) -> Result<String, OutputError> {
+    marked_scene(plan, shown, view, title, &[])
+}
+
+/// Draws a state with marks of what the case asks.
+///
+/// # Errors
+/// A raster without area.
+pub fn marked_scene(
+    plan: &MechanicsPlan,
+    shown: &SystemShown,
+    view: &View,
+    title: &str,
+    marks: &[Mark],
+) -> Result<String, OutputError> {
     let labels = Labels(plan.head.unit_names());
     if view.axes[0].x > view.axes[1].x {
         return Ok(Page::new(SIZE, title, &view.note).finish());
@@ -187,6 +202,7 @@ pub fn scene(plan: &MechanicsPlan, shown: &SystemShown, view: &View, title: &str
         system_plane::axis_of_rotation(&mut page.svg, view.room, &camera);
     }
     camera.axes(&mut page.svg, view.axes, labels.axes(plan.space).each_ref().map(String::as_str));
+    key.extend(system_marks::draw(&mut page, marks, &camera));
     page.key(&key);
     system_names::write(&mut page, shown, &camera);
     bar(&mut page, shown, &view.scale, &labels);

@@ -192,8 +192,13 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
     for y in 0..height {
         for x in 0..width {
             let mut sum = [0.0; 3];
+            let place = |s: usize| (y * samples + s / samples) * width * samples + x * samples + s % samples;
+            if (0..samples * samples).all(|s| layers.iter().all(|layer| layer[place(s)].body == 0)) {
+                image.set(x, y, RGBColor(255, 255, 255));
+                continue;
+            }
             for s in 0..samples * samples {
-                let at = (y * samples + s / samples) * width * samples + x * samples + s % samples;
+                let at = place(s);
                 let mut colour = [255.0; 3];
                 for (layer, lines) in layers.iter().zip(&lines) {
                     let sample = &layer[at];
@@ -216,7 +221,7 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
                 }
                 (0..3).for_each(|k| sum[k] += colour[k]);
             }
-            let [r, g, b] = sum.map(|c| (c / (samples * samples) as f64).round() as u8);
+            let [r, g, b] = sum.map(|c| (c / (samples * samples) as f64 + 0.5) as u8);
             image.set(x, y, RGBColor(r, g, b));
         }
     }
@@ -229,7 +234,11 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
 /// A page without area.
 pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) -> Result<(), OutputError> {
     let [left, top, right, bottom] = camera.area;
-    render(bodies, camera, look)?.insert(out, (left, right), (top, bottom))
+    let image = render(bodies, camera, look)?;
+    match look {
+        Look::Film => image.insert_for_now(out, (left, right), (top, bottom)),
+        Look::Solid | Look::Map => image.insert(out, (left, right), (top, bottom)),
+    }
 }
 
 /// Puts a body into a layer wherever it is in front.
@@ -250,6 +259,7 @@ fn rasterise(
             [(x - camera.area[0]) * zoom, (y - camera.area[1]) * zoom, camera.towards.dot(p)]
         })
         .collect();
+    let opacity = (255.0 * body.opacity).round() as u8;
     let light = (camera.towards + Vector::<3>::z() * 0.8 - camera.right * 0.4).normalize();
     for (corners, normals) in body.triangles.iter().zip(&body.normals) {
         let [a, b, c] = corners.map(|k| place[k as usize]);
@@ -287,9 +297,9 @@ fn rasterise(
                 *sample = Sample {
                     depth,
                     body: number,
-                    normal: std::array::from_fn(|k| (seen[k] * 127.0).round() as i8),
-                    colour: [colour.0, colour.1, colour.2].map(|c| (f64::from(c) * shade).round() as u8),
-                    opacity: (255.0 * body.opacity).round() as u8,
+                    normal: std::array::from_fn(|k| (seen[k] * 127.0 + 128.5) as u8 as i16 - 128).map(|n: i16| n as i8),
+                    colour: [colour.0, colour.1, colour.2].map(|c| (f64::from(c) * shade + 0.5) as u8),
+                    opacity,
                 };
             }
         }

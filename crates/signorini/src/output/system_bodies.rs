@@ -25,7 +25,7 @@ pub fn scale_of(shown: &SystemShown) -> Scale {
     }
     let forces = shown.curves.iter().flat_map(|c| c.forces.iter().copied());
     let (low, high) = forces.fold((0.0f64, 0.0f64), |(low, high), f| (low.min(f), high.max(f)));
-    Scale::between(low, high, 0.0)
+    if low == 0.0 && high == 0.0 { Scale::chosen([0.0; 2], [0.0; 2]) } else { Scale::between(low, high, 0.0) }
 }
 
 /// The axial force at the points of a curve: the mean of its cells there.
@@ -92,15 +92,16 @@ fn curves(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
     let [low, high] = shown.bounds();
     let thin = THIN * (high - low).max();
     let curve = |c: &CurveShown| {
-        let colours: Vec<f64> = at_points(c).iter().map(|f| scale.place(*f)).collect();
-        tube(&c.points, &c.cells, c.radius.max(thin), Paint::Field(colours))
+        let colours = || at_points(c).iter().map(|f| scale.place(*f)).collect();
+        let paint = if scale.is_empty() { Paint::Plain(FREE) } else { Paint::Field(colours()) };
+        tube(&c.points, &c.cells, c.radius.max(thin), paint)
     };
     shown.curves.iter().map(curve).collect()
 }
 
 /// The solids, coloured by their stress where nothing else is coloured.
 pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
-    let paint = |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty()) {
+    let paint = |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
         Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
         None => Paint::Plain(FREE),
     };

@@ -4,7 +4,7 @@
 use super::camera::corners;
 use super::chart::save;
 use super::labels::Labels;
-use super::page::sheet;
+use super::page::{Scale, sheet};
 use super::render::Look;
 use super::section_forces::diagrams;
 use super::system::{ContactShown, SystemShown};
@@ -182,5 +182,7 @@ fn note(shown: &SystemShown, factor: f64) -> String {
 pub fn preview(plan: &MechanicsPlan) -> Result<String, OutputError> {
     let shown = SystemShown::of_bodies(plan, &plan.system.start().bodies);
     let view = View { note: "at the start; loads as they are at the end".into(), ..View::of(plan, &shown) };
+    // Marks are seen best on bodies without colours.
+    let view = View { scale: Scale::chosen([0.0; 2], [0.0; 2]), ..view };
     marked_scene(plan, &shown, &view, plan.head.problem.name(), &marks(plan))
 }

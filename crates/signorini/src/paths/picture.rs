@@ -181,7 +181,7 @@ pub fn of_paths(case: &PathCase, surfaces: &[Surface], lines: &[Line]) -> Result
     let size = Page::size_within(extent_seen, [SIZE.0 - MARGIN[0] - MARGIN[2], SIZE.1 - MARGIN[1] - MARGIN[3]]);
     let mut page = Page::new((size.0.max(text_width(case.name(), TITLE) + 40.0), size.1), case.name(), "");
     let inner = page.room();
-    let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
+    let area = [inner[0] + 26.0, inner[1], inner[2] - 40.0, inner[3] - 6.0];
     let camera = Camera::new(&from, &up, around.iter(), area);
     insert(&mut page.svg, &bodies, &camera, Look::Solid)?;
     let axes = ["x", "y", "z"].map(|a| labels.length(a));

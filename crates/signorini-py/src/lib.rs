@@ -265,7 +265,9 @@ mod _native {
     use super::sweep::{sweep_begin, sweep_gather, sweep_missing, sweep_row};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
     #[pymodule_export]
-    use super::{check, draw, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve};
+    use super::{
+        check, draw, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve,
+    };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -201,7 +201,10 @@ impl Shape<'_> {
                 ),
             };
             let body = Body {
-                points: edges.iter().map(|&(a, b, t)| points[a as usize] * (1.0 - t) + points[b as usize] * t).collect(),
+                points: edges
+                    .iter()
+                    .map(|&(a, b, t)| points[a as usize] * (1.0 - t) + points[b as usize] * t)
+                    .collect(),
                 normals: vec![[-clip.slope; 3]; triangles.len()],
                 triangles,
                 paint,

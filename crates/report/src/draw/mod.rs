@@ -154,7 +154,8 @@ pub fn draw_to(folder: &Path, output: Option<&Path>, wanted: &Wanted) -> Result<
 /// # Errors
 /// Another extension.
 pub fn format_of(path: &Path) -> Result<Format, ReportError> {
-    let is_film = path.extension().is_some_and(|e| ["mp4", "webm", "avi", "mov"].iter().any(|v| e.eq_ignore_ascii_case(v)));
+    let is_film =
+        path.extension().is_some_and(|e| ["mp4", "webm", "avi", "mov"].iter().any(|v| e.eq_ignore_ascii_case(v)));
     let help = if is_film {
         "there is no encoder for films here; WebP, GIF and APNG show all times, and other programs convert them"
     } else {
@@ -177,7 +178,8 @@ fn read(
     let sources: Vec<Source> = sources(&results.path);
     let all = times(&sources);
     let (Some(&first), Some(&last)) = (all.first(), all.last()) else {
-        let help = "the case does not store fields, or the run ended before the first; remove fields = false of [output]";
+        let help =
+            "the case does not store fields, or the run ended before the first; remove fields = false of [output]";
         return Err(wrong("the folder has no files of fields to draw", help));
     };
     let shown = match when {

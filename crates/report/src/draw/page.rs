@@ -109,11 +109,8 @@ impl Sheet {
         let mut page = Page::new(size, &title, &self.note);
         let [left, top, right, bottom] = [MARGIN[0], MARGIN[1], size.0 - MARGIN[2], size.1 - MARGIN[3]];
         // In space the axes stand aside, with their names.
-        let area = if self.is_flat {
-            [left, top, right, bottom]
-        } else {
-            [left + 26.0, top, right - 40.0, bottom - 6.0]
-        };
+        let area =
+            if self.is_flat { [left, top, right, bottom] } else { [left + 26.0, top, right - 40.0, bottom - 6.0] };
         let camera = Camera::new(directions[0], directions[1], frame.points.iter(), area);
         let look = match (self.is_map, self.moves) {
             (true, _) => Look::Map,

@@ -131,7 +131,8 @@ impl Wanted {
         let found = found.and_then(|(w, h)| Some([w.trim().parse::<u32>().ok()?, h.trim().parse::<u32>().ok()?]));
         let is_valid = |size: &[u32; 2]| size.iter().all(|v| (LEAST_PIXELS..=MOST_PIXELS).contains(v));
         found.filter(is_valid).map(Some).ok_or_else(|| {
-            let help = format!("give WIDTHxHEIGHT in pixels, each from {LEAST_PIXELS} to {MOST_PIXELS}, such as 1600x900");
+            let help =
+                format!("give WIDTHxHEIGHT in pixels, each from {LEAST_PIXELS} to {MOST_PIXELS}, such as 1600x900");
             wrong(format!("`{text}` is no size of a picture"), help)
         })
     }
@@ -192,7 +193,8 @@ impl Clip {
 /// The slope of a linear expression, and its value at the origin.
 fn linear(side: &str, text: &str, help: &str) -> Result<(Vector<3>, f64), ReportError> {
     let names = Names { variables: vec!["x", "y", "z"], ..Names::default() };
-    let expression = parse(side.trim(), &names).map_err(|e| wrong(format!("the clip `{text}`: {}", e.message), help))?;
+    let expression =
+        parse(side.trim(), &names).map_err(|e| wrong(format!("the clip `{text}`: {}", e.message), help))?;
     let at = |x: Vector<3>| {
         let position = [0, 1, 2].map(|k| Jet::<3>::variable(x[k], k));
         expression.evaluate(&Scope { position, time: Jet::<3>::constant(0.0) })

@@ -31,9 +31,8 @@ pub fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, OutputError> {
     let _ = writeln!(page.content, "{POINTS} 0 0 -{POINTS} 0 {height} cm");
     page.group(tree.root(), 1.0)?;
     let images: String = (0..page.images.len()).map(|k| format!("/I{k} {} 0 R ", 5 + k)).collect();
-    let states: String = (page.opacities.iter())
-        .map(|o| format!("/G{o} <</ca {0} /CA {0}>> ", f64::from(*o) / 1000.0))
-        .collect();
+    let states: String =
+        (page.opacities.iter()).map(|o| format!("/G{o} <</ca {0} /CA {0}>> ", f64::from(*o) / 1000.0)).collect();
     let mut objects: Vec<Vec<u8>> = vec![
         b"<</Type /Catalog /Pages 2 0 R>>".to_vec(),
         b"<</Type /Pages /Kids [3 0 R] /Count 1>>".to_vec(),

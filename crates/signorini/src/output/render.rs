@@ -176,7 +176,9 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
             continue;
         }
         let mut layer = vec![Sample::default(); width * height * samples * samples];
-        own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, (look, dense * samples as f64)));
+        own().for_each(|(k, body)| {
+            rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, (look, dense * samples as f64))
+        });
         layers.push(if look == Look::Map {
             layer
         } else {
@@ -195,6 +197,18 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
             let place = |s: usize| (y * samples + s / samples) * width * samples + x * samples + s % samples;
             if (0..samples * samples).all(|s| layers.iter().all(|layer| layer[place(s)].body == 0)) {
                 image.set(x, y, RGBColor(255, 255, 255));
+                continue;
+            }
+            if let [layer] = &layers[..]
+                && (0..samples * samples)
+                    .all(|s| layer[place(s)].opacity == 255 && !lines[0].get(place(s)).is_some_and(|l| *l))
+            {
+                // Nothing but a surface.
+                for s in 0..samples * samples {
+                    (0..3).for_each(|k| sum[k] += f64::from(layer[place(s)].colour[k]));
+                }
+                let [r, g, b] = sum.map(|c: f64| (c / (samples * samples) as f64 + 0.5) as u8);
+                image.set(x, y, RGBColor(r, g, b));
                 continue;
             }
             for s in 0..samples * samples {
@@ -244,14 +258,7 @@ pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) ->
 /// Puts a body into a layer wherever it is in front.
 ///
 /// The zoom is the number of samples per unit of the page.
-fn rasterise(
-    layer: &mut [Sample],
-    width: usize,
-    body: &Body,
-    number: u16,
-    camera: &Camera,
-    (look, zoom): (Look, f64),
-) {
+fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, (look, zoom): (Look, f64)) {
     let height = layer.len() / width;
     let place: Vec<[f64; 3]> = (body.points.iter())
         .map(|p| {
@@ -314,7 +321,9 @@ fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> V
         let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
         f64::from(cosine) >= CREASE * 127.0 * 127.0
     };
-    let fits = |p: &Sample, q: &Sample| p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q);
+    let fits = |p: &Sample, q: &Sample| {
+        p.body > 0 && p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q)
+    };
     // The samples before and behind a slit of at most so many samples along a line.
     let across = |k: usize, along: usize, at: usize, end: usize| {
         (1..=most).find_map(|width| {
@@ -332,9 +341,18 @@ fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> V
             })
         })
     };
+    // What goes on evenly to either side lies in no slit: of one that is two samples wide, a side is a neighbour.
+    let goes_on = |k: usize, along: usize, at: usize, end: usize| {
+        let s = &layer[k];
+        let with = |t: &Sample| s.body == t.body && (s.body == 0 || (s.depth - t.depth).abs() <= step && is_even(s, t));
+        at > 0 && at + 1 < end && with(&layer[k - along]) && with(&layer[k + along]) && most <= 2
+    };
     (0..layer.len())
         .map(|k| {
             let (x, y) = (k % width, k / width);
+            if goes_on(k, 1, x, width) && goes_on(k, width, y, height) {
+                return layer[k];
+            }
             across(k, 1, x, width).or_else(|| across(k, width, y, height)).unwrap_or(layer[k])
         })
         .collect()
@@ -351,9 +369,12 @@ fn outlines(layer: &[Sample], width: usize, step: f32) -> Vec<bool> {
         if p.body != q.body {
             return true;
         }
+        if p.body == 0 {
+            return false;
+        }
         let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
-        if p.body == 0 || f64::from(cosine) < CREASE * 127.0 * 127.0 {
-            return p.body > 0;
+        if f64::from(cosine) < CREASE * 127.0 * 127.0 {
+            return true;
         }
         let within = |known: bool, a: usize, b: usize| {
             if known && layer[a].body == layer[b].body { change(a, b) } else { f32::INFINITY }

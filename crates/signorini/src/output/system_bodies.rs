@@ -4,8 +4,8 @@ use super::colours::{FREE, RIGID};
 use super::level::{OF_HEXAHEDRON, surface};
 use super::page::Scale;
 use super::render::{Body, Paint};
-use super::tube::tube;
 use super::system::{CurveShown, RigidShown, SystemShown, moved};
+use super::tube::tube;
 use crate::fields::Fields;
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
@@ -101,10 +101,11 @@ fn curves(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
 
 /// The solids, coloured by their stress where nothing else is coloured.
 pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
-    let paint = |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
-        Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
-        None => Paint::Plain(FREE),
-    };
+    let paint =
+        |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
+            Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
+            None => Paint::Plain(FREE),
+        };
     shown.solids().map(|fields| solid(fields, paint(fields))).collect()
 }
 

@@ -53,7 +53,8 @@ pub fn marks(plan: &MechanicsPlan) -> Vec<Mark> {
     for (number, contact) in plan.system.contacts.iter().enumerate() {
         let stated = plan.head.problem.contacts.get(contact.name());
         let between = stated.and_then(|c| c.between.as_ref()).into_iter().flatten();
-        let mut places: Vec<Place> = between.filter_map(|side| part(plan, side)).flat_map(|p| of_part(plan, &start, &p)).collect();
+        let mut places: Vec<Place> =
+            between.filter_map(|side| part(plan, side)).flat_map(|p| of_part(plan, &start, &p)).collect();
         if places.is_empty() {
             let sites = plan.system.sites(number, &start).unwrap_or_default();
             places = sites.iter().map(|s| (s.x, None)).collect();
@@ -91,10 +92,8 @@ fn of_part(plan: &MechanicsPlan, start: &SystemState, part: &Part) -> Vec<Place>
     let (body, state) = (&plan.system.bodies[part.body], &start.bodies[part.body]);
     let group = part.group.as_deref();
     let sites = body.sites(group, Sampling::Nodes).unwrap_or_default();
-    let mut places: Vec<Place> = (sites.iter())
-        .map(|site| body.placed(state, site))
-        .map(|point| (point.x, point.outward))
-        .collect();
+    let mut places: Vec<Place> =
+        (sites.iter()).map(|site| body.placed(state, site)).map(|point| (point.x, point.outward)).collect();
     if places.is_empty() {
         places.extend(body.point(group).map(|x| (x, None)));
     }

@@ -23,9 +23,7 @@ pub fn tube(points: &[Vector<3>], cells: &[[u32; 2]], radius: f64, paint: Paint)
     for tangent in &tangents {
         let t = tangent.try_normalize(0.0).unwrap_or_else(Vector::<3>::x);
         // Turned about the curve as little as can be.
-        across = (across - t * t.dot(&across))
-            .try_normalize(1e-9)
-            .unwrap_or_else(|| any_tangent(&t));
+        across = (across - t * t.dot(&across)).try_normalize(1e-9).unwrap_or_else(|| any_tangent(&t));
         let other = t.cross(&across);
         let ring = (0..AROUND_SECTION).map(|k| {
             let angle = std::f64::consts::TAU * k as f64 / AROUND_SECTION as f64;

@@ -112,11 +112,8 @@ impl Sheet {
         let area =
             if self.is_flat { [left, top, right, bottom] } else { [left + 26.0, top, right - 40.0, bottom - 6.0] };
         let camera = Camera::new(directions[0], directions[1], frame.points.iter(), area);
-        let look = match (self.is_map, self.moves) {
-            (true, _) => Look::Map,
-            (false, true) => Look::Film,
-            (false, false) => Look::Solid,
-        };
+        let look = if self.is_map { Look::Map } else { Look::Solid };
+        let look = if self.moves { look.of_film() } else { look };
         let lift = Vector::<3>::z() * (LIFT * (frame.axes[1] - frame.axes[0]).max());
         let bodies: Vec<Body> = state.bodies.iter().map(|body| self.painted(body, &lift)).collect();
         let finer = zoom.map_or(1.0, |zoom| (zoom / PIXELS).max(0.5));

@@ -13,10 +13,13 @@ const fn density(look: Look) -> (f64, usize) {
     match look {
         Look::Solid => (1.5, 2),
         Look::Film => (1.0, 2),
-        Look::Map => (2.5, 1),
+        Look::Map => (MAP, 1),
+        Look::FilmMap => (1.0, 1),
     }
 }
 
+/// Pixels of flat colours per unit of the page: twice those of the PNG along each side, where their edges are smoothed.
+pub const MAP: f64 = 2.5;
 /// Cosine of the angle between faces from which on their edge is drawn: 30 degrees.
 const CREASE: f64 = 0.866;
 /// Translucent bodies tint what they are in front of by more than this part of the picture's width, not what they touch.
@@ -136,6 +139,21 @@ pub enum Look {
     Film,
     /// Colours as they are on the colour map.
     Map,
+    /// The same, coarser, for frames of films.
+    FilmMap,
+}
+
+impl Look {
+    /// Whether colours are those of the colour map.
+    fn is_map(self) -> bool {
+        matches!(self, Look::Map | Look::FilmMap)
+    }
+
+    /// The same for frames of films.
+    #[must_use]
+    pub fn of_film(self) -> Self {
+        if self.is_map() { Look::FilmMap } else { Look::Film }
+    }
 }
 
 /// What is seen through a sample: the body, counted from one; zero where there is nothing.
@@ -179,15 +197,11 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
         own().for_each(|(k, body)| {
             rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, (look, dense * samples as f64))
         });
-        layers.push(if look == Look::Map {
-            layer
-        } else {
-            without_cracks(layer, width * samples, samples, step as f32)
-        });
+        layers.push(if look.is_map() { layer } else { without_cracks(layer, width * samples, samples, step as f32) });
     }
     let lines: Vec<Vec<bool>> = match look {
         Look::Solid | Look::Film => layers.iter().map(|layer| outlines(layer, width * samples, step as f32)).collect(),
-        Look::Map => vec![Vec::new(); layers.len()],
+        Look::Map | Look::FilmMap => vec![Vec::new(); layers.len()],
     };
     let touching = (TOUCHING * (right - left) / camera.scale) as f32;
     let mut image = Image::new(width as u32, height as u32)?;
@@ -226,7 +240,7 @@ pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) ->
                     for k in 0..3 {
                         colour[k] += (own[k] - colour[k]) * share;
                     }
-                    if look != Look::Map && lines[at] {
+                    if !look.is_map() && lines[at] {
                         // Lines are light on dark colours.
                         let light = 0.3 * own[0] + 0.59 * own[1] + 0.11 * own[2];
                         let ink = if light < 80.0 { 235.0 } else { 25.0 };
@@ -250,7 +264,7 @@ pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) ->
     let [left, top, right, bottom] = camera.area;
     let image = render(bodies, camera, look)?;
     match look {
-        Look::Film => image.insert_for_now(out, (left, right), (top, bottom)),
+        Look::Film | Look::FilmMap => image.insert_for_now(out, (left, right), (top, bottom)),
         Look::Solid | Look::Map => image.insert(out, (left, right), (top, bottom)),
     }
 }
@@ -296,7 +310,7 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
                 let normal = normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
                 let seen = normal.try_normalize(0.0).unwrap_or(camera.towards);
                 let seen = if seen.dot(&camera.towards) < 0.0 { -seen } else { seen };
-                let shade = if look == Look::Map { 1.0 } else { 0.76 + 0.24 * seen.dot(&light) };
+                let shade = if look.is_map() { 1.0 } else { 0.76 + 0.24 * seen.dot(&light) };
                 let colour = match &body.paint {
                     Paint::Plain(colour) => *colour,
                     Paint::Field(values) => viridis((0..3).map(|k| w[k] * values[corners[k] as usize]).sum()),

@@ -5,7 +5,6 @@ use super::camera::corners;
 use super::chart::save;
 use super::labels::Labels;
 use super::page::{Scale, sheet};
-use super::render::Look;
 use super::section_forces::diagrams;
 use super::system::{ContactShown, SystemShown};
 use super::system_marks::marks;
@@ -145,7 +144,7 @@ fn film_of(plan: &MechanicsPlan, frames: &[SystemShown], last: &View) -> Result<
     let Some(view) = frames.iter().map(|frame| View::of(plan, frame)).reduce(View::joined) else {
         return Ok(Vec::new());
     };
-    let look = if view.look == Look::Solid { Look::Film } else { view.look };
+    let look = view.look.of_film();
     let view = View { look, from: last.from, what: last.what.clone(), note: last.note.clone(), ..view };
     frames.par_iter().map(|f| scene(plan, f, &view, &titled(&view.what, f.time))).collect()
 }

@@ -9,6 +9,7 @@
 from __future__ import annotations
 
 from ._base import Samples, Value
+from ._draw import draw
 from ._errors import CaseError, InternalError, MissingPackage, OutputError, SignoriniError
 from ._meshes import from_meshio, from_pyvista
 from ._native import __version__
@@ -38,6 +39,6 @@ from ._sweep import Rows, sweep
 __all__ = [
     *_names, "CaseError", "Closest", "ContactResult", "Event", "Fields", "Fitted", "InternalError", "MissingPackage",
     "OutputError", "Picture", "Problem", "Record", "Result", "Rows", "Samples", "SignoriniError", "State", "Value", "check",
-    "closest_points", "explain", "fit", "from_meshio", "from_pyvista", "gallery", "run", "scene", "set_threads",
+    "closest_points", "draw", "explain", "fit", "from_meshio", "from_pyvista", "gallery", "run", "scene", "set_threads",
     "sweep", "theorem", "wind", "wrap", "__version__",
 ]

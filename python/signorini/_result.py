@@ -353,6 +353,12 @@ class Result:
             _native.report(made, os.fspath(target))
         return target
 
+    def draw(self, path: "Union[str, os.PathLike, None]" = None, **options: Any) -> bytes:
+        """Draws the result anew, without solving, with the options of :func:`signorini.draw`, and returns the picture."""
+        from ._draw import draw
+
+        return draw(self, path, **options)
+
     def to_pyvista(self, state: int = -1) -> Any:
         """The fields of a state as pyvista.MultiBlock: bodies, and contacts called ``contact NAME``.
 

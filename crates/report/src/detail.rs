@@ -61,7 +61,7 @@ impl Detail {
 }
 
 /// As many of the numbers below `count` as are wanted, evenly, the last one included.
-fn evenly(count: usize, wanted: usize) -> Vec<usize> {
+pub fn evenly(count: usize, wanted: usize) -> Vec<usize> {
     if count <= wanted {
         return (0..count).collect();
     }

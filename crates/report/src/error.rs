@@ -24,6 +24,9 @@ pub enum ReportError {
     /// The report cannot be written.
     #[error("cannot write `{path}`: {source}")]
     Write { path: PathBuf, source: io::Error },
+    /// A picture that cannot be drawn as it is wanted.
+    #[error("{message}")]
+    Option { message: String, help: String },
     /// The address is taken, or may not be used.
     #[error("cannot listen on port {port} of this computer: {source}")]
     Listen { port: u16, source: io::Error },
@@ -31,7 +34,7 @@ pub enum ReportError {
 
 impl ReportError {
     /// What to do about it.
-    pub fn help(&self) -> &'static str {
+    pub fn help(&self) -> &str {
         match self {
             Self::Missing(_) | Self::NotAFolder(_) | Self::NotResults(_) => {
                 "give the folder of a run, such as `out` after  signorini run case.toml -o out"
@@ -41,6 +44,7 @@ impl ReportError {
             Self::Write { .. } => {
                 "check the free space and the permission to write; or choose another file with -o FILE"
             }
+            Self::Option { help, .. } => help,
             Self::Listen { .. } => "choose another port with --port, or 0 for any that is free",
         }
     }

@@ -6,6 +6,7 @@
 mod charts;
 mod collection;
 mod detail;
+pub mod draw;
 mod error;
 mod folder;
 mod html;

@@ -103,7 +103,7 @@ fn filled(template: &str, fill: &[(&str, String)]) -> String {
 }
 
 /// Names of bodies and units, from case and summary.
-fn context(results: &Results) -> Context<'_> {
+pub fn context(results: &Results) -> Context<'_> {
     let table: Option<toml::Table> = results.case.as_ref().and_then(|text| text.parse().ok());
     let bodies = table.as_ref().and_then(|t| t.get("bodies")?.as_table());
     let is_rigid = |body: &toml::Value| body.get("rigid").is_some();

@@ -144,13 +144,14 @@ pub fn of_frames(
 }
 
 /// The box of what deforms; of everything where nothing does.
-struct Extent {
-    low: [f64; 3],
-    high: [f64; 3],
+pub struct Extent {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
 }
 
 impl Extent {
-    fn of(frames: &[Vec<Piece>]) -> Self {
+    /// That of pieces at all times.
+    pub fn of(frames: &[Vec<Piece>]) -> Self {
         let of = |is_wanted: &dyn Fn(&Piece) -> bool| {
             let mut extent = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
             for piece in frames.iter().flatten().filter(|p| is_wanted(p)) {
@@ -168,13 +169,14 @@ impl Extent {
         if deformable.low[0] <= deformable.high[0] { deformable } else { of(&|_| true) }
     }
 
-    fn size(&self) -> f64 {
+    /// The length of its diagonal.
+    pub fn size(&self) -> f64 {
         (0..3).map(|k| (self.high[k] - self.low[k]).powi(2)).sum::<f64>().sqrt()
     }
 }
 
 /// Gives arrows their tips, the same length for the same traction at all times.
-fn grow_arrows(frames: &mut [Vec<Piece>], size: f64) {
+pub fn grow_arrows(frames: &mut [Vec<Piece>], size: f64) {
     let mut most: HashMap<String, f64> = HashMap::new();
     let norm = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     for piece in frames.iter().flatten().filter(|p| p.look == Look::Arrows) {

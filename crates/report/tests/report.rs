@@ -1,9 +1,12 @@
 //! Reports of gallery cases of every kind, of runs that fail, and of folders that are none.
 
+use plotters::style::RGBColor;
 use signorini::case;
 use signorini::gallery::find;
+use signorini::output::chart::{Format, viridis};
 use signorini::problem::Limits;
 use signorini::run::{self, Silent};
+use signorini_report::draw::{Wanted, draw, format_of};
 use signorini_report::{ReportError, report, write};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -208,4 +211,75 @@ fn the_server_answers_this_computer_only() {
     assert!(ask("GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n").starts_with("HTTP/1.1 403"));
     assert!(ask(&format!("POST / HTTP/1.1\r\n{host}")).starts_with("HTTP/1.1 405"));
     assert!(ask(&format!("GET /../summary.json HTTP/1.1\r\n{host}")).starts_with("HTTP/1.1 404"));
+}
+
+#[test]
+fn a_cut_shows_the_field_on_the_section_and_tells_values_that_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    run_case("patch_test", &[], folder.path());
+    // The blocks widen by 0.003 y: the section at y = 0.5, where y was 0.4985, has half of what the far side has, the side
+    // behind has nothing.
+    let wanted = Wanted {
+        field: Some("displacement_y".into()),
+        view: Some("y".into()),
+        clips: vec!["y<0.5".into()],
+        range: Some("0:0.003".into()),
+        size: Some("1000x1000".into()),
+        ..Wanted::default()
+    };
+    let drawn = draw(folder.path(), &wanted, Format::Png).unwrap();
+    assert!((drawn.ends[1] - 0.001_495_5).abs() < 1e-6 && drawn.ends[0].abs() < 1e-9, "{:?}", drawn.ends);
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&drawn.bytes));
+    reader.set_transformations(png::Transformations::EXPAND);
+    let mut reader = reader.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let at = 3 * (634 * info.width as usize + 453);
+    let RGBColor(r, g, b) = viridis(0.5);
+    // Light takes at most a quarter of a colour.
+    for (found, full) in pixels[at..at + 3].iter().zip([r, g, b]) {
+        let share = f64::from(*found) / f64::from(full);
+        assert!((0.75..=1.02).contains(&share), "{:?}", &pixels[at..at + 3]);
+    }
+    // Of a stress that is zero there is round-off only.
+    let wanted = Wanted { field: Some("stress_xy".into()), ..Wanted::default() };
+    let drawn = draw(folder.path(), &wanted, Format::Svg).unwrap();
+    assert_eq!(drawn.ends, [0.0, 0.0]);
+    assert!(drawn.notes.iter().any(|note| note.contains("round-off")), "{:?}", drawn.notes);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_answered_with_what_can() {
+    let folder = tempfile::tempdir().unwrap();
+    run_case("patch_test", &[], folder.path());
+    let wrong = [
+        (Wanted { field: Some("pressure".into()), ..Wanted::default() }, "did you mean `contact_pressure`?"),
+        (Wanted { field: Some("pressure".into()), ..Wanted::default() }, "von_mises"),
+        (Wanted { clips: vec!["x>7".into()], ..Wanted::default() }, "x from 0 to"),
+        (Wanted { clips: vec!["x*y>0".into()], ..Wanted::default() }, "x<0.5"),
+        (Wanted { view: Some("up".into()), ..Wanted::default() }, "iso"),
+        (Wanted { range: Some("3:1".into()), ..Wanted::default() }, "LOW:HIGH"),
+        (Wanted { size: Some("1x1".into()), ..Wanted::default() }, "WIDTHxHEIGHT"),
+        (Wanted { time: Some("noon".into()), ..Wanted::default() }, "last"),
+    ];
+    for (wanted, help) in wrong {
+        let error = draw(folder.path(), &wanted, Format::Png).unwrap_err();
+        assert!(error.help().contains(help), "{error}: {}", error.help());
+    }
+    let error = format_of(Path::new("film.mp4")).unwrap_err();
+    assert!(error.to_string().contains("webp"), "{error}");
+}
+
+#[test]
+fn all_times_are_frames_of_files_that_move() {
+    let folder = tempfile::tempdir().unwrap();
+    run_case("swords", &["frames=3"], folder.path());
+    let drawn = |format: Format| draw(folder.path(), &Wanted::default(), format).unwrap();
+    let count = |bytes: &[u8], what: &[u8]| bytes.windows(what.len()).filter(|w| *w == what).count();
+    let webp = drawn(Format::WebP);
+    assert!(webp.times.len() > 1);
+    assert_eq!(count(&webp.bytes, b"ANMF"), webp.times.len());
+    assert_eq!(count(&drawn(Format::Apng).bytes, b"fcTL"), webp.times.len());
+    assert!(drawn(Format::Gif).bytes.starts_with(b"GIF89a"));
+    assert!(drawn(Format::Pdf).bytes.starts_with(b"%PDF"));
 }

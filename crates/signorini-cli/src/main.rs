@@ -13,6 +13,7 @@ mod sweeps;
 use clap::{CommandFactory, Parser, Subcommand};
 use console::tell;
 use signorini::problem::Limits;
+use signorini_report::draw::Wanted;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -30,6 +31,7 @@ const EXAMPLES: &str = "Examples:
   signorini closest queries.json -o answers.json      closest points of pairs of shapes
   signorini fit blister.toml                          adhesion from measurements
   signorini report out                                one HTML page of the results in ./out
+  signorini draw out --field displacement --view iso  a picture of them
   signorini check case.toml                           check the case and report its size
   signorini new flat_disc                             a new case from a template
   signorini explain iteration_limit                   explain a word of the results
@@ -45,6 +47,15 @@ const CLOSEST_HELP: &str = r#"Examples:
   signorini closest queries.json -o answers.json
 
 A wrong query is answered with an error, and the exit status is 1. The other queries are answered."#;
+
+const DRAW_HELP: &str = "Examples:
+  signorini draw out
+  signorini draw out -o cut.png --field von_mises --clip 'x<0.5' --range 0:250
+  signorini draw out -o side.pdf --view -y --time 0.5 --scale 10
+  signorini draw out -o film.gif --view 30,20
+
+PNG, SVG and PDF show one time, GIF, WebP and APNG all of them. An unknown field is answered with the
+fields that there are.";
 
 /// Computational contact mechanics.
 #[derive(Parser)]
@@ -88,7 +99,7 @@ enum Command {
         /// Replace or add a key
         #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
         set: Vec<String>,
-        /// Draw the initial state of the case, as PNG or SVG
+        /// Draw the initial state of the case, as PNG, SVG or PDF
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
     },
@@ -125,6 +136,14 @@ enum Command {
         /// The file (default: report.html in the folder)
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+    },
+    /// Draw the results of a run anew, without solving
+    #[command(after_help = DRAW_HELP)]
+    Draw {
+        /// The folder of the results, or a JSON file of signorini closest
+        results: PathBuf,
+        #[command(flatten)]
+        options: DrawOptions,
     },
     /// Show the results of a run in a browser, also while it goes on
     #[command(after_help = "Example:\n  signorini view out")]
@@ -230,6 +249,41 @@ struct LimitOptions {
     max_iterations: Option<i64>,
 }
 
+#[derive(clap::Args)]
+struct DrawOptions {
+    /// The file: png, svg, pdf, gif, webp or apng (default: pictures/drawn_FIELD.png in the folder)
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// What the colours show, by its name in the files; `none` for no colours (default: that of most interest)
+    #[arg(long, value_name = "NAME")]
+    field: Option<String>,
+    /// The time, the nearest that is stored; `first` or `last` (default: last, and all in files that move)
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    time: Option<String>,
+    /// From where: x, -x, y, -y, z, -z, iso, or AZIMUTH,ELEVATION in degrees (default: as the run draws it)
+    #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
+    view: Option<String>,
+    /// Keep a half-space, such as 'x<0.5' or 'x+2*z>1'; 'y=0' keeps what is behind. May be repeated
+    #[arg(long = "clip", value_name = "PLANE", allow_hyphen_values = true)]
+    clips: Vec<String>,
+    /// The ends of the colour map, in the unit of the field
+    #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
+    range: Option<String>,
+    /// Multiply displacements, or heights of membranes, by this
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    scale: Option<f64>,
+    /// Size in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT")]
+    size: Option<String>,
+}
+
+impl DrawOptions {
+    fn wanted(self) -> (Option<PathBuf>, Wanted) {
+        let Self { output, field, time, view, clips, range, scale, size } = self;
+        (output, Wanted { field, time, view, clips, range, scale, size })
+    }
+}
+
 impl RunOptions {
     fn wanted(self, limits: &LimitOptions, resume: bool) -> commands::Wanted {
         let limits = Limits { max_time: limits.max_time, max_iterations: limits.max_iterations };
@@ -291,6 +345,10 @@ fn main() -> ExitCode {
             commands::closest(&queries, to.as_deref(), &output, local_minima, json)
         }
         Command::Report { folder, output } => report::write(&folder, output.as_deref(), json),
+        Command::Draw { results, options } => {
+            let (output, wanted) = options.wanted();
+            report::draw(&results, output.as_deref(), &wanted, json)
+        }
         Command::View { folder, port } => report::view(&folder, port, json),
         Command::New { template, folder } => begin::new(&template, folder, json),
         Command::Migrate { files } => begin::migrate(&files, json),

@@ -15,13 +15,14 @@ use crate::progress::Told;
 use crate::stated::Stated;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use serde_json::json;
 use signorini::output::Folder;
 use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
 use signorini::run;
 use signorini::scene::{self, Scene};
+use signorini_report::draw::{Wanted, draw_to, format_of};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -176,6 +177,38 @@ fn report(py: Python<'_>, folder: PathBuf, output: PathBuf) -> PyResult<()> {
     })
 }
 
+/// Draws the results of a folder: as bytes in a format, and into a file where one is given.
+///
+/// # Errors
+/// A folder without results, options that cannot be understood, a picture that cannot be written.
+#[pyfunction]
+#[pyo3(signature = (folder, output, format, field, time, view, clips, range, scale, size))]
+#[allow(clippy::too_many_arguments)]
+fn draw<'py>(
+    py: Python<'py>,
+    folder: PathBuf,
+    output: Option<PathBuf>,
+    format: &str,
+    field: Option<String>,
+    time: Option<String>,
+    view: Option<String>,
+    clips: Vec<String>,
+    range: Option<String>,
+    scale: Option<f64>,
+    size: Option<String>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let wanted = Wanted { field, time, view, clips, range, scale, size };
+    let format = Path::new("picture").with_extension(format);
+    let bytes = apart(py, || {
+        let drawn = match output {
+            Some(output) => draw_to(&folder, Some(&output), &wanted)?.1,
+            None => signorini_report::draw::draw(&folder, &wanted, format_of(&format)?)?,
+        };
+        Ok(drawn.bytes)
+    })?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
 /// Whether a text is a scene of moving bodies rather than a problem.
 #[pyfunction]
 fn is_scene(text: &str) -> bool {
@@ -232,7 +265,9 @@ mod _native {
     use super::sweep::{sweep_begin, sweep_gather, sweep_missing, sweep_row};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
     #[pymodule_export]
-    use super::{check, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve};
+    use super::{
+        check, draw, explain, fit, gallery, is_scene, panic, read, report, run_scene, schema, set_threads, solve,
+    };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -30,6 +30,7 @@ fn arguments(command: &str) -> Option<(&'static [&'static str], i32)> {
         "fit" => (&["fit", "case.toml", "--json"], 1),
         "closest" => (&["closest", "queries.json", "-o", "answers.json"], 0),
         "report" => (&["report", "nothing", "--json"], 1),
+        "draw" => (&["draw", "nothing", "--json"], 1),
         "view" => (&["view", "nothing", "--json"], 1),
         "new" => (&["new", "string", "begun"], 0),
         "migrate" => (&["migrate", "case.toml"], 0),

@@ -1,5 +1,7 @@
 //! Drawing: SVG by `plotters`, PNG from the same SVG by `resvg`, with a font that travels along.
 
+use super::animation::{Shown, gif, webp};
+use super::pdf::pdf;
 use super::{Folder, OutputError, atomic};
 use base64::Engine as _;
 use plotters::coord::Shift;
@@ -42,15 +44,102 @@ pub fn save(folder: &Folder, name: &str, svg: &str) -> Result<(), OutputError> {
     folder.write(&format!("pictures/{name}.png"), &png(svg)?)
 }
 
-/// Writes one picture into a file, whole or not at all: as SVG or PNG, as its extension says.
+/// A file format of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Png,
+    Svg,
+    Pdf,
+    Gif,
+    WebP,
+    /// An animated PNG.
+    Apng,
+}
+
+impl Format {
+    /// All formats with the extensions of their files.
+    const ALL: [(&'static str, Format); 6] = [
+        ("png", Format::Png),
+        ("svg", Format::Svg),
+        ("pdf", Format::Pdf),
+        ("gif", Format::Gif),
+        ("webp", Format::WebP),
+        ("apng", Format::Apng),
+    ];
+
+    /// The format that the extension of a file says.
+    ///
+    /// # Errors
+    /// Another extension; the message lists those that are valid.
+    pub fn of(path: &std::path::Path) -> Result<Self, OutputError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let known = Self::ALL.iter().find(|(name, _)| *name == extension).map(|f| f.1);
+        known.ok_or_else(|| {
+            let what = match extension.as_str() {
+                "" => format!("the file `{}` has no extension that says its format", path.display()),
+                other => format!("`{other}` is not a picture format"),
+            };
+            let names: Vec<&str> = Self::ALL.iter().map(|f| f.0).collect();
+            failed(format!("{what}; valid are {}", names.join(", ")))
+        })
+    }
+
+    /// Whether it can hold pictures at several times.
+    pub fn moves(self) -> bool {
+        matches!(self, Format::Gif | Format::WebP | Format::Apng)
+    }
+}
+
+/// Writes one picture into a file, whole or not at all, in the format that its extension says.
+///
+/// # Errors
+/// An unknown extension, a picture that cannot be drawn, a file that cannot be written.
 pub fn save_as(path: &std::path::Path, svg: &str) -> Result<(), OutputError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let bytes = match extension.as_str() {
-        "svg" => svg.as_bytes().to_vec(),
-        "png" => png(svg)?,
-        other => return Err(failed(format!("`{other}` is not a picture format; valid are png and svg"))),
-    };
+    let bytes = still(Format::of(path)?, svg, None)?;
     atomic::write(path, &bytes).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
+}
+
+/// A picture in a format; `zoom` is the number of pixels per unit, chosen for a screen if left out.
+///
+/// # Errors
+/// A picture that cannot be drawn.
+pub fn still(format: Format, svg: &str, zoom: Option<f32>) -> Result<Vec<u8>, OutputError> {
+    Ok(match (format, zoom) {
+        (Format::Svg, _) => svg.as_bytes().to_vec(),
+        (Format::Pdf, _) => pdf(&usvg::Tree::from_str(svg, options()).map_err(failed)?)?,
+        (Format::Png, None) => png(svg)?,
+        (Format::Png, Some(zoom)) => encoded(&rendered(svg, zoom)?)?,
+        (Format::Gif | Format::WebP | Format::Apng, _) => {
+            moving(format, &[Shot { svg: svg.to_string(), shown: 0 }], zoom.unwrap_or(ZOOM))?
+        }
+    })
+}
+
+/// Pictures of one size in a row, in a format that can hold them.
+///
+/// # Errors
+/// Pictures that cannot be drawn, and a format of single pictures.
+pub fn moving(format: Format, shots: &[Shot], zoom: f32) -> Result<Vec<u8>, OutputError> {
+    if format == Format::Apng {
+        return animation(shots, zoom);
+    }
+    let drawn: Vec<([u32; 2], Shown)> = (shots.par_iter())
+        .map(|shot| {
+            let (width, height, rgba) = pixels(&shot.svg, zoom)?;
+            let rgb = rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+            Ok(([width, height], Shown { rgb, milliseconds: shot.shown }))
+        })
+        .collect::<Result<_, OutputError>>()?;
+    let Some(size) = drawn.first().map(|d| d.0) else { return Err(failed("there is nothing to show")) };
+    if drawn.iter().any(|d| d.0 != size) {
+        return Err(failed("the pictures of an animation differ in size"));
+    }
+    let shown: Vec<Shown> = drawn.into_iter().map(|d| d.1).collect();
+    match format {
+        Format::Gif => gif(size, &shown),
+        Format::WebP => webp(size, &shown),
+        _ => Err(failed("the format holds one picture only")),
+    }
 }
 
 fn options() -> &'static usvg::Options<'static> {
@@ -68,13 +157,18 @@ fn options() -> &'static usvg::Options<'static> {
 /// # Errors
 /// A picture that cannot be drawn.
 pub fn png(svg: &str) -> Result<Vec<u8>, OutputError> {
-    let width = usvg::Tree::from_str(svg, options()).map_err(failed)?.size().width();
-    encoded(&rendered(svg, ZOOM.min(WIDEST / width))?)
+    let tree = usvg::Tree::from_str(svg, options()).map_err(failed)?;
+    encoded(&raster(&tree, ZOOM.min(WIDEST / tree.size().width()))?)
 }
 
 /// As a PNG: with a palette where that is enough, without transparency where there is none.
 #[doc(hidden)]
 pub fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
+    packed(image, png::Compression::Balanced)
+}
+
+/// The same, packed as tightly as is wanted.
+fn packed(image: &tiny_skia::Pixmap, compression: png::Compression) -> Result<Vec<u8>, OutputError> {
     let mut bytes = Vec::new();
     let opaque = image.pixels().iter().all(|p| p.is_opaque());
     if opaque && let Some((palette, data)) = indexed(image) {
@@ -82,7 +176,7 @@ pub fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_palette(palette);
-        encoder.set_compression(png::Compression::Balanced);
+        encoder.set_compression(compression);
         encoder.write_header().and_then(|mut writer| writer.write_image_data(&data)).map_err(failed)?;
         return Ok(bytes);
     }
@@ -94,7 +188,7 @@ pub fn encoded(image: &tiny_skia::Pixmap) -> Result<Vec<u8>, OutputError> {
     let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
     encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_compression(compression);
     encoder.write_header().and_then(|mut writer| writer.write_image_data(&data)).map_err(failed)?;
     Ok(bytes)
 }
@@ -186,11 +280,14 @@ fn changed(before: &[u8], after: &[u8], width: usize) -> [usize; 4] {
 }
 
 fn rendered(svg: &str, zoom: f32) -> Result<tiny_skia::Pixmap, OutputError> {
-    let tree = usvg::Tree::from_str(svg, options()).map_err(failed)?;
+    raster(&usvg::Tree::from_str(svg, options()).map_err(failed)?, zoom)
+}
+
+fn raster(tree: &usvg::Tree, zoom: f32) -> Result<tiny_skia::Pixmap, OutputError> {
     let size = tree.size();
     let (w, h) = ((size.width() * zoom) as u32, (size.height() * zoom) as u32);
     let mut pixmap = tiny_skia::Pixmap::new(w, h).ok_or_else(|| failed("no memory for the picture"))?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(zoom, zoom), &mut pixmap.as_mut());
+    resvg::render(tree, tiny_skia::Transform::from_scale(zoom, zoom), &mut pixmap.as_mut());
     Ok(pixmap)
 }
 
@@ -263,9 +360,26 @@ impl Image {
 
     /// Puts the image into an SVG, above the background and below everything else.
     pub fn insert(&self, svg: &mut String, x: (f64, f64), y: (f64, f64)) -> Result<(), OutputError> {
-        let data = base64::engine::general_purpose::STANDARD.encode(encoded(&self.pixmap)?);
+        self.insert_packed(svg, (x, y), png::Compression::Balanced)
+    }
+
+    /// The same for an SVG that is drawn at once and not stored.
+    ///
+    /// # Errors
+    /// A picture without background.
+    pub fn insert_for_now(&self, svg: &mut String, x: (f64, f64), y: (f64, f64)) -> Result<(), OutputError> {
+        self.insert_packed(svg, (x, y), png::Compression::Fastest)
+    }
+
+    fn insert_packed(
+        &self,
+        svg: &mut String,
+        (x, y): ((f64, f64), (f64, f64)),
+        compression: png::Compression,
+    ) -> Result<(), OutputError> {
+        let data = base64::engine::general_purpose::STANDARD.encode(packed(&self.pixmap, compression)?);
         let element = format!(
-            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
+            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:smooth\" xlink:href=\"data:image/png;base64,{data}\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n",
             x.0,
             y.0,
             x.1 - x.0,
@@ -333,13 +447,20 @@ pub fn viridis(t: f64) -> RGBColor {
         (170, 220, 50),
         (253, 231, 37),
     ];
-    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
     // No more colours than a palette of bytes holds, beside a few others: pictures take a third of the room.
-    let t = (t * LEVELS).round() / LEVELS * (STOPS.len() - 1) as f64;
-    let i = (t as usize).min(STOPS.len() - 2);
-    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
-    let (a, b) = (STOPS[i], STOPS[i + 1]);
-    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+    static COLOURS: OnceLock<Vec<RGBColor>> = OnceLock::new();
+    let colours = COLOURS.get_or_init(|| {
+        let colour = |level: usize| {
+            let t = level as f64 / LEVELS * (STOPS.len() - 1) as f64;
+            let i = (t as usize).min(STOPS.len() - 2);
+            let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
+            let (a, b) = (STOPS[i], STOPS[i + 1]);
+            RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+        };
+        (0..=LEVELS as usize).map(colour).collect()
+    });
+    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
+    colours[(t * LEVELS + 0.5) as usize]
 }
 
 /// A number as a label: short, without trailing zeros.

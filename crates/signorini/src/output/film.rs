@@ -5,7 +5,7 @@ use super::{Folder, OutputError};
 
 /// More frames than this are thinned out: every other one goes.
 #[doc(hidden)]
-pub const MOST_FRAMES: usize = 48;
+pub const MOST_FRAMES: usize = 24;
 /// Size of the frames, relative to that of pictures at their plain size.
 const ZOOM: f32 = 0.8;
 /// Milliseconds for which a frame is shown at least, for which a film lasts at least, and for which its end stays.

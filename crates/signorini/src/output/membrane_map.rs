@@ -5,6 +5,7 @@ use super::camera::Camera;
 use super::chart::{Image, label, line, range, viridis, word};
 use super::labels::Labels;
 use super::page::{Page, Scale, Sign, css};
+use super::render::MAP;
 use crate::exact;
 use crate::plan::MembranePlan;
 use crate::snapshot::{DisplayMesh, Snapshot};
@@ -17,7 +18,7 @@ const FRONT: RGBColor = RGBColor(213, 60, 40);
 const EXACT: RGBColor = RGBColor(20, 20, 20);
 pub const FREE: RGBColor = RGBColor(228, 228, 228);
 /// Pixels of the raster per unit of the page: twice as many as those of the PNG.
-const DENSITY: f64 = 2.5;
+const DENSITY: f64 = MAP;
 /// Numbers of zones are written into them where these are this wide on the page, and beside them otherwise.
 const ROOMY: f64 = 34.0;
 
@@ -66,6 +67,21 @@ pub fn map<const D: usize>(
     compared: bool,
     labels: &Labels,
 ) -> Result<String, OutputError> {
+    map_dense(plan, mesh, s, field, (compared, DENSITY), labels)
+}
+
+/// The same with so many pixels of the raster per unit of the page; without the comparison for frames of films.
+///
+/// # Errors
+/// A raster without area.
+pub fn map_dense<const D: usize>(
+    plan: &MembranePlan<D>,
+    mesh: &DisplayMesh<D>,
+    s: &Snapshot<D>,
+    field: &Field,
+    (compared, density): (bool, f64),
+    labels: &Labels,
+) -> Result<String, OutputError> {
     let flat = |p: &Point<D>| Vector::<3>::new(p[0], p[D - 1], 0.0);
     let corners = (mesh.points.iter().map(flat))
         .fold([Vector::<3>::repeat(f64::INFINITY), Vector::<3>::repeat(f64::NEG_INFINITY)], |[l, h], x| {
@@ -77,14 +93,18 @@ pub fn map<const D: usize>(
     let camera = Camera::of_plane(&corners, page.room());
     let [left, top, right, bottom] = camera.area;
     let at = |p: &Point<D>| camera.at(&flat(p));
-    let pixels = |length: f64| (length * DENSITY).round().max(1.0) as u32;
+    let pixels = |length: f64| (length * density).round().max(1.0) as u32;
     let mut image = Image::new(pixels(right - left), pixels(bottom - top))?;
     let place = |p: &Point<D>| {
         let (x, y) = at(p);
-        Point::<2>::new((x - left) * DENSITY, (y - top) * DENSITY)
+        Point::<2>::new((x - left) * density, (y - top) * density)
     };
     fill(&mut image, mesh, s, field, place);
-    image.insert(&mut page.svg, (left, right), (top, bottom))?;
+    if density < DENSITY {
+        image.insert_for_now(&mut page.svg, (left, right), (top, bottom))?;
+    } else {
+        image.insert(&mut page.svg, (left, right), (top, bottom))?;
+    }
     rim(&mut page.svg, mesh, at);
     camera.axes(&mut page.svg, corners, ["x", "y", "z"].map(|n| labels.length(n)).each_ref().map(String::as_str));
     for front in &s.fronts() {

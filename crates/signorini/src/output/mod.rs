@@ -1,25 +1,27 @@
 //! Result files: each written under another name first and then renamed, so that a file is whole or absent.
 
+mod animation;
 pub mod atomic;
 mod body_fields;
-pub(crate) mod camera;
+pub mod camera;
 pub mod chart;
-pub(crate) mod colours;
+pub mod colours;
 pub mod figure;
 pub mod film;
 pub mod folder;
 pub(crate) mod history;
 pub(crate) mod labels;
-pub(crate) mod level;
+pub mod level;
 pub(crate) mod membrane_line;
 pub(crate) mod membrane_map;
-mod outline;
-pub(crate) mod page;
+pub mod outline;
+pub mod page;
 pub(crate) mod panel;
+mod pdf;
 pub mod pictures;
 pub(crate) mod pressure_map;
 mod pressure_profile;
-pub(crate) mod render;
+pub mod render;
 pub mod rigid;
 mod section_forces;
 pub mod system;
@@ -27,11 +29,13 @@ pub(crate) mod system_bodies;
 mod system_contacts;
 mod system_cut;
 pub mod system_files;
+mod system_marks;
 mod system_names;
 pub mod system_pictures;
 mod system_plane;
 mod system_scene;
 pub mod tables;
+pub mod tube;
 pub mod vtk;
 
 pub use folder::{Earlier, Files, Folder, OutputError};

@@ -95,8 +95,13 @@ impl Page {
 
     /// The size of a page for a part of the plane, as large as it can be drawn with one scale for both directions.
     pub fn size_for(extent: [f64; 2]) -> (f64, f64) {
-        let scale = (MOST[0] / extent[0]).min(MOST[1] / extent[1]);
-        let room = [0, 1].map(|k| (extent[k] * scale).clamp(LEAST[k], MOST[k]));
+        Self::size_within(extent, MOST)
+    }
+
+    /// The same where it takes no more than this along either side.
+    pub fn size_within(extent: [f64; 2], most: [f64; 2]) -> (f64, f64) {
+        let scale = (most[0] / extent[0]).min(most[1] / extent[1]);
+        let room = [0, 1].map(|k| (extent[k] * scale).clamp(LEAST[k], most[k]));
         (room[0] + MARGIN[0] + MARGIN[2], room[1] + MARGIN[1] + MARGIN[3])
     }
 
@@ -220,6 +225,27 @@ impl Scale {
         let even = if high.abs() <= ROUNDING * size { 0.0 } else { high };
         let (low, high) = if even == 0.0 { (0.0, size) } else { (even.min(0.0), even.max(0.0)) };
         Scale { low, high, ends: [even, even] }
+    }
+
+    /// Between two values that somebody chose; the least and the largest value may be beyond them.
+    pub fn chosen([low, high]: [f64; 2], ends: [f64; 2]) -> Self {
+        Scale { low, high, ends }
+    }
+
+    /// The same colours for values with other ends: those of what is drawn.
+    #[must_use]
+    pub fn with_ends(self, ends: [f64; 2]) -> Self {
+        Scale { ends, ..self }
+    }
+
+    /// The values of both ends of the colour map.
+    pub fn range(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// The least and the largest value.
+    pub fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 
     /// What holds for the values of both.

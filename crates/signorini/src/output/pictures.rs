@@ -4,8 +4,9 @@ use super::chart::save;
 use super::history::{Drive, convergence, history, loop_of_states};
 use super::labels::Labels;
 use super::membrane_line::{gap_and_pressure, heights, profile};
-use super::membrane_map::{Field, gap_scale, map, own_scale};
+use super::membrane_map::{Field, gap_scale, map, map_dense, own_scale};
 use super::page::{Scale, sheet};
+use super::render::MAP;
 use super::{Folder, OutputError, film};
 use crate::plan::MembranePlan;
 use crate::report::{Event, StepReport};
@@ -14,6 +15,9 @@ use rayon::prelude::*;
 
 /// Of states whose contact is at least this part of the largest, the last one tells most.
 const TELLING: f64 = 0.8;
+
+/// Pixels of the raster per unit of the page in frames of films: a few more than films have.
+const FILM: f64 = 1.0;
 
 type Drawing<'a> = Box<dyn Fn() -> Result<String, OutputError> + Sync + 'a>;
 
@@ -135,7 +139,7 @@ fn film_of<const D: usize>(
     let range =
         frames.iter().map(heights).fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
     let scale = frames.iter().map(frame_scale).reduce(|a, b| a.with(&b));
-    frames.par_iter().map(|s| frame(plan, mesh, s, range, scale, labels)).collect()
+    frames.par_iter().map(|s| frame(plan, mesh, s, range, scale, labels, FILM)).collect()
 }
 
 fn frame_scale<const D: usize>(s: &Snapshot<D>) -> Scale {
@@ -149,12 +153,13 @@ fn frame<const D: usize>(
     range: (f64, f64),
     scale: Option<Scale>,
     labels: &Labels,
+    density: f64,
 ) -> Result<String, OutputError> {
     if D == 1 {
         return Ok(profile(plan, mesh, s, false, labels, range));
     }
     let field = if s.has_obstacles() { gap(s, scale, labels) } else { deflection(s, scale, labels) };
-    map(plan, mesh, s, &field, false, labels)
+    map_dense(plan, mesh, s, &field, (false, density), labels)
 }
 
 /// A membrane before it touches: on a line its profile over what lies below, in the plane the gap.
@@ -166,5 +171,5 @@ pub fn preview<const D: usize>(
     mesh: &DisplayMesh<D>,
     s: &Snapshot<D>,
 ) -> Result<String, OutputError> {
-    frame(plan, mesh, s, heights(s), None, &Labels(plan.head.unit_names()))
+    frame(plan, mesh, s, heights(s), None, &Labels(plan.head.unit_names()), MAP)
 }

@@ -13,10 +13,13 @@ const fn density(look: Look) -> (f64, usize) {
     match look {
         Look::Solid => (1.5, 2),
         Look::Film => (1.0, 2),
-        Look::Map => (2.5, 1),
+        Look::Map => (MAP, 1),
+        Look::FilmMap => (1.0, 1),
     }
 }
 
+/// Pixels of flat colours per unit of the page: twice those of the PNG along each side, where their edges are smoothed.
+pub const MAP: f64 = 2.5;
 /// Cosine of the angle between faces from which on their edge is drawn: 30 degrees.
 const CREASE: f64 = 0.866;
 /// Translucent bodies tint what they are in front of by more than this part of the picture's width, not what they touch.
@@ -136,6 +139,21 @@ pub enum Look {
     Film,
     /// Colours as they are on the colour map.
     Map,
+    /// The same, coarser, for frames of films.
+    FilmMap,
+}
+
+impl Look {
+    /// Whether colours are those of the colour map.
+    fn is_map(self) -> bool {
+        matches!(self, Look::Map | Look::FilmMap)
+    }
+
+    /// The same for frames of films.
+    #[must_use]
+    pub fn of_film(self) -> Self {
+        if self.is_map() { Look::FilmMap } else { Look::Film }
+    }
 }
 
 /// What is seen through a sample: the body, counted from one; zero where there is nothing.
@@ -153,8 +171,17 @@ struct Sample {
 /// # Errors
 /// A page without area.
 pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, OutputError> {
+    render_finer(bodies, camera, look, 1.0)
+}
+
+/// The same with `finer` times as many pixels along each side.
+///
+/// # Errors
+/// A page without area.
+pub fn render_finer(bodies: &[Body], camera: &Camera, look: Look, finer: f64) -> Result<Image, OutputError> {
     let [left, top, right, bottom] = camera.area;
     let (dense, samples) = density(look);
+    let dense = dense * finer;
     let pixels = |length: f64| (length * dense).round().max(1.0) as usize;
     let (width, height) = (pixels(right - left), pixels(bottom - top));
     // The change of depth between samples of a surface at 80 degrees.
@@ -167,24 +194,39 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
             continue;
         }
         let mut layer = vec![Sample::default(); width * height * samples * samples];
-        own().for_each(|(k, body)| rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, look));
-        layers.push(if look == Look::Map {
-            layer
-        } else {
-            without_cracks(layer, width * samples, samples, step as f32)
+        own().for_each(|(k, body)| {
+            rasterise(&mut layer, width * samples, body, k as u16 + 1, camera, (look, dense * samples as f64))
         });
+        layers.push(if look.is_map() { layer } else { without_cracks(layer, width * samples, samples, step as f32) });
     }
     let lines: Vec<Vec<bool>> = match look {
         Look::Solid | Look::Film => layers.iter().map(|layer| outlines(layer, width * samples, step as f32)).collect(),
-        Look::Map => vec![Vec::new(); layers.len()],
+        Look::Map | Look::FilmMap => vec![Vec::new(); layers.len()],
     };
     let touching = (TOUCHING * (right - left) / camera.scale) as f32;
     let mut image = Image::new(width as u32, height as u32)?;
     for y in 0..height {
         for x in 0..width {
             let mut sum = [0.0; 3];
+            let place = |s: usize| (y * samples + s / samples) * width * samples + x * samples + s % samples;
+            if (0..samples * samples).all(|s| layers.iter().all(|layer| layer[place(s)].body == 0)) {
+                image.set(x, y, RGBColor(255, 255, 255));
+                continue;
+            }
+            if let [layer] = &layers[..]
+                && (0..samples * samples)
+                    .all(|s| layer[place(s)].opacity == 255 && !lines[0].get(place(s)).is_some_and(|l| *l))
+            {
+                // Nothing but a surface.
+                for s in 0..samples * samples {
+                    (0..3).for_each(|k| sum[k] += f64::from(layer[place(s)].colour[k]));
+                }
+                let [r, g, b] = sum.map(|c: f64| (c / (samples * samples) as f64 + 0.5) as u8);
+                image.set(x, y, RGBColor(r, g, b));
+                continue;
+            }
             for s in 0..samples * samples {
-                let at = (y * samples + s / samples) * width * samples + x * samples + s % samples;
+                let at = place(s);
                 let mut colour = [255.0; 3];
                 for (layer, lines) in layers.iter().zip(&lines) {
                     let sample = &layer[at];
@@ -198,7 +240,7 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
                     for k in 0..3 {
                         colour[k] += (own[k] - colour[k]) * share;
                     }
-                    if look != Look::Map && lines[at] {
+                    if !look.is_map() && lines[at] {
                         // Lines are light on dark colours.
                         let light = 0.3 * own[0] + 0.59 * own[1] + 0.11 * own[2];
                         let ink = if light < 80.0 { 235.0 } else { 25.0 };
@@ -207,7 +249,7 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
                 }
                 (0..3).for_each(|k| sum[k] += colour[k]);
             }
-            let [r, g, b] = sum.map(|c| (c / (samples * samples) as f64).round() as u8);
+            let [r, g, b] = sum.map(|c| (c / (samples * samples) as f64 + 0.5) as u8);
             image.set(x, y, RGBColor(r, g, b));
         }
     }
@@ -220,13 +262,17 @@ pub fn render(bodies: &[Body], camera: &Camera, look: Look) -> Result<Image, Out
 /// A page without area.
 pub fn insert(out: &mut String, bodies: &[Body], camera: &Camera, look: Look) -> Result<(), OutputError> {
     let [left, top, right, bottom] = camera.area;
-    render(bodies, camera, look)?.insert(out, (left, right), (top, bottom))
+    let image = render(bodies, camera, look)?;
+    match look {
+        Look::Film | Look::FilmMap => image.insert_for_now(out, (left, right), (top, bottom)),
+        Look::Solid | Look::Map => image.insert(out, (left, right), (top, bottom)),
+    }
 }
 
 /// Puts a body into a layer wherever it is in front.
-fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, look: Look) {
-    let (dense, samples) = density(look);
-    let zoom = dense * samples as f64;
+///
+/// The zoom is the number of samples per unit of the page.
+fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camera: &Camera, (look, zoom): (Look, f64)) {
     let height = layer.len() / width;
     let place: Vec<[f64; 3]> = (body.points.iter())
         .map(|p| {
@@ -234,6 +280,7 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
             [(x - camera.area[0]) * zoom, (y - camera.area[1]) * zoom, camera.towards.dot(p)]
         })
         .collect();
+    let opacity = (255.0 * body.opacity).round() as u8;
     let light = (camera.towards + Vector::<3>::z() * 0.8 - camera.right * 0.4).normalize();
     for (corners, normals) in body.triangles.iter().zip(&body.normals) {
         let [a, b, c] = corners.map(|k| place[k as usize]);
@@ -263,7 +310,7 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
                 let normal = normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
                 let seen = normal.try_normalize(0.0).unwrap_or(camera.towards);
                 let seen = if seen.dot(&camera.towards) < 0.0 { -seen } else { seen };
-                let shade = if look == Look::Map { 1.0 } else { 0.76 + 0.24 * seen.dot(&light) };
+                let shade = if look.is_map() { 1.0 } else { 0.76 + 0.24 * seen.dot(&light) };
                 let colour = match &body.paint {
                     Paint::Plain(colour) => *colour,
                     Paint::Field(values) => viridis((0..3).map(|k| w[k] * values[corners[k] as usize]).sum()),
@@ -271,9 +318,9 @@ fn rasterise(layer: &mut [Sample], width: usize, body: &Body, number: u16, camer
                 *sample = Sample {
                     depth,
                     body: number,
-                    normal: std::array::from_fn(|k| (seen[k] * 127.0).round() as i8),
-                    colour: [colour.0, colour.1, colour.2].map(|c| (f64::from(c) * shade).round() as u8),
-                    opacity: (255.0 * body.opacity).round() as u8,
+                    normal: std::array::from_fn(|k| (seen[k] * 127.0 + 128.5) as u8 as i16 - 128).map(|n: i16| n as i8),
+                    colour: [colour.0, colour.1, colour.2].map(|c| (f64::from(c) * shade + 0.5) as u8),
+                    opacity,
                 };
             }
         }
@@ -288,7 +335,9 @@ fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> V
         let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
         f64::from(cosine) >= CREASE * 127.0 * 127.0
     };
-    let fits = |p: &Sample, q: &Sample| p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q);
+    let fits = |p: &Sample, q: &Sample| {
+        p.body > 0 && p.body == q.body && (p.depth - q.depth).abs() <= 2.0 * step && is_even(p, q)
+    };
     // The samples before and behind a slit of at most so many samples along a line.
     let across = |k: usize, along: usize, at: usize, end: usize| {
         (1..=most).find_map(|width| {
@@ -306,9 +355,18 @@ fn without_cracks(layer: Vec<Sample>, width: usize, most: usize, step: f32) -> V
             })
         })
     };
+    // What goes on evenly to either side lies in no slit: of one that is two samples wide, a side is a neighbour.
+    let goes_on = |k: usize, along: usize, at: usize, end: usize| {
+        let s = &layer[k];
+        let with = |t: &Sample| s.body == t.body && (s.body == 0 || (s.depth - t.depth).abs() <= step && is_even(s, t));
+        at > 0 && at + 1 < end && with(&layer[k - along]) && with(&layer[k + along]) && most <= 2
+    };
     (0..layer.len())
         .map(|k| {
             let (x, y) = (k % width, k / width);
+            if goes_on(k, 1, x, width) && goes_on(k, width, y, height) {
+                return layer[k];
+            }
             across(k, 1, x, width).or_else(|| across(k, width, y, height)).unwrap_or(layer[k])
         })
         .collect()
@@ -325,9 +383,12 @@ fn outlines(layer: &[Sample], width: usize, step: f32) -> Vec<bool> {
         if p.body != q.body {
             return true;
         }
+        if p.body == 0 {
+            return false;
+        }
         let cosine: i32 = (0..3).map(|i| i32::from(p.normal[i]) * i32::from(q.normal[i])).sum();
-        if p.body == 0 || f64::from(cosine) < CREASE * 127.0 * 127.0 {
-            return p.body > 0;
+        if f64::from(cosine) < CREASE * 127.0 * 127.0 {
+            return true;
         }
         let within = |known: bool, a: usize, b: usize| {
             if known && layer[a].body == layer[b].body { change(a, b) } else { f32::INFINITY }

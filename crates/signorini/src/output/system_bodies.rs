@@ -5,66 +5,17 @@ use super::level::{OF_HEXAHEDRON, surface};
 use super::page::Scale;
 use super::render::{Body, Paint};
 use super::system::{CurveShown, RigidShown, SystemShown, moved};
+use super::tube::tube;
 use crate::fields::Fields;
 use signorini_fem::CellShape;
 use signorini_geometry::Vector;
 use std::collections::BTreeMap;
 
-/// Corners of the polygon that is drawn for a section.
-const AROUND_SECTION: usize = 12;
 /// Curves are drawn at least so thick, as a part of the extent of the picture.
 const THIN: f64 = 0.006;
 /// How much a rigid body hides of what is behind it: those around curves are seen through a little, those around solids more.
 const VEIL: f64 = 0.75;
 const THIN_VEIL: f64 = 0.4;
-
-/// A tube about a curve, coloured by values at its points from 0 to 1.
-pub fn tube(curve: &CurveShown, radius: f64, colours: &[f64]) -> Body {
-    let n = curve.points.len();
-    let mut tangents = vec![Vector::<3>::zeros(); n];
-    for [a, b] in &curve.cells {
-        let d = curve.points[*b as usize] - curve.points[*a as usize];
-        let d = d.try_normalize(0.0).unwrap_or_default();
-        tangents[*a as usize] += d;
-        tangents[*b as usize] += d;
-    }
-    let mut across =
-        signorini_mechanics::pair::any_tangent(&tangents[0].try_normalize(0.0).unwrap_or_else(Vector::<3>::x));
-    let mut rings: Vec<Vec<Vector<3>>> = Vec::with_capacity(n);
-    for tangent in &tangents {
-        let t = tangent.try_normalize(0.0).unwrap_or_else(Vector::<3>::x);
-        // Turned about the curve as little as can be.
-        across = (across - t * t.dot(&across))
-            .try_normalize(1e-9)
-            .unwrap_or_else(|| signorini_mechanics::pair::any_tangent(&t));
-        let other = t.cross(&across);
-        let ring = (0..AROUND_SECTION).map(|k| {
-            let angle = std::f64::consts::TAU * k as f64 / AROUND_SECTION as f64;
-            across * angle.cos() + other * angle.sin()
-        });
-        rings.push(ring.collect());
-    }
-    let mut body = Body::empty(Paint::Field(Vec::new()));
-    let mut values = Vec::new();
-    for [a, b] in &curve.cells {
-        let first = body.points.len() as u32;
-        for end in [*a as usize, *b as usize] {
-            body.points.extend(rings[end].iter().map(|r| curve.points[end] + r * radius));
-            values.extend(std::iter::repeat_n(colours[end], AROUND_SECTION));
-        }
-        let m = AROUND_SECTION as u32;
-        for k in 0..m {
-            let next = (k + 1) % m;
-            let (p, q) = (&rings[*a as usize], &rings[*b as usize]);
-            body.triangles.push([first + k, first + next, first + m + next]);
-            body.normals.push([p[k as usize], p[next as usize], q[next as usize]]);
-            body.triangles.push([first + k, first + m + next, first + m + k]);
-            body.normals.push([p[k as usize], q[next as usize], q[k as usize]]);
-        }
-    }
-    body.paint = Paint::Field(values);
-    body
-}
 
 /// What the colours tell: the axial force of curves, from zero on; without curves, the equivalent stress of solids.
 pub fn scale_of(shown: &SystemShown) -> Scale {
@@ -74,7 +25,7 @@ pub fn scale_of(shown: &SystemShown) -> Scale {
     }
     let forces = shown.curves.iter().flat_map(|c| c.forces.iter().copied());
     let (low, high) = forces.fold((0.0f64, 0.0f64), |(low, high), f| (low.min(f), high.max(f)));
-    Scale::between(low, high, 0.0)
+    if low == 0.0 && high == 0.0 { Scale::chosen([0.0; 2], [0.0; 2]) } else { Scale::between(low, high, 0.0) }
 }
 
 /// The axial force at the points of a curve: the mean of its cells there.
@@ -141,18 +92,20 @@ fn curves(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
     let [low, high] = shown.bounds();
     let thin = THIN * (high - low).max();
     let curve = |c: &CurveShown| {
-        let colours: Vec<f64> = at_points(c).iter().map(|f| scale.place(*f)).collect();
-        tube(c, c.radius.max(thin), &colours)
+        let colours = || at_points(c).iter().map(|f| scale.place(*f)).collect();
+        let paint = if scale.is_empty() { Paint::Plain(FREE) } else { Paint::Field(colours()) };
+        tube(&c.points, &c.cells, c.radius.max(thin), paint)
     };
     shown.curves.iter().map(curve).collect()
 }
 
 /// The solids, coloured by their stress where nothing else is coloured.
 pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
-    let paint = |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty()) {
-        Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
-        None => Paint::Plain(FREE),
-    };
+    let paint =
+        |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
+            Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
+            None => Paint::Plain(FREE),
+        };
     shown.solids().map(|fields| solid(fields, paint(fields))).collect()
 }
 

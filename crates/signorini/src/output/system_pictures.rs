@@ -4,11 +4,13 @@
 use super::camera::corners;
 use super::chart::save;
 use super::labels::Labels;
-use super::page::sheet;
-use super::render::Look;
+use super::page::{Scale, sheet};
 use super::section_forces::diagrams;
 use super::system::{ContactShown, SystemShown};
-use super::system_scene::{Rigid, View, around_contact, facing_contact, scene, titled};
+use super::system_marks::marks;
+use super::system_scene::{
+    Forces, Rigid, View, around_contact, around_largest, around_loops, facing_contact, marked_scene, scene, titled,
+};
 use super::{
     Folder, OutputError, film, history, pressure_map, pressure_profile, system_contacts, system_cut, system_plane,
 };
@@ -42,7 +44,12 @@ pub fn draw(
     let mut shown = shown.clone();
     shown.magnify(factor);
     frames.iter_mut().for_each(|frame| frame.magnify(factor));
-    let view = View { note: note(&shown, factor), ..View::of(plan, &shown) };
+    let mut view = View { note: note(&shown, factor), ..View::of(plan, &shown) };
+    if plan.space == Space::ThreeD && facing_contact(&shown).is_some() {
+        // They are drawn in a picture from the side from which they are seen.
+        view.forces = Forces::LeftOut;
+    }
+    let view = view;
     let mut drawn = vec![("deformed".to_string(), scene(plan, &shown, &view, &titled(&view.what, shown.time))?)];
     drawn.extend(contact_zone(plan, &shown, &view)?);
     drawn.extend(system_cut::cut(plan, &shown, &view)?.map(|picture| ("cut".into(), picture)));
@@ -90,14 +97,18 @@ fn contact_zone(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Resul
         // Not beyond what the whole picture shows.
         *frame = [frame[0].sup(&view.room[0]), frame[1].inf(&view.room[1])];
     }
-    let small = around.filter(|frame| size(*frame) < SMALL * size(shown.bounds()));
+    let is_small = |frame: &[Vector<3>; 2]| size(*frame) < SMALL * size(shown.bounds());
+    // Of curves with the loops between what touches, or else a part of a zone that is long.
+    let close = around_loops(shown).filter(is_small).or(around.filter(is_small));
+    let small = close.or_else(|| around_largest(shown).filter(|_| in_space).filter(is_small));
     if small.is_some() || (around.is_some() && averted.is_some()) {
         let mut zone = View { note: "contact zone".into(), ..View::of(plan, shown) };
         if let Some(frame) = small {
             zone = near(frame, zone);
         }
         if let Some(from) = averted {
-            let note = "contact zone, without rigid bodies".into();
+            let below = if from.z < 0.0 { " from below" } else { "" };
+            let note = format!("contact zone{below}, without rigid bodies");
             zone = View { from, rigid: Rigid::LeftOut, note, ..zone };
         }
         out.push(("contact".into(), scene(plan, shown, &zone, &title)?));
@@ -133,7 +144,7 @@ fn film_of(plan: &MechanicsPlan, frames: &[SystemShown], last: &View) -> Result<
     let Some(view) = frames.iter().map(|frame| View::of(plan, frame)).reduce(View::joined) else {
         return Ok(Vec::new());
     };
-    let look = if view.look == Look::Solid { Look::Film } else { view.look };
+    let look = view.look.of_film();
     let view = View { look, from: last.from, what: last.what.clone(), note: last.note.clone(), ..view };
     frames.par_iter().map(|f| scene(plan, f, &view, &titled(&view.what, f.time))).collect()
 }
@@ -169,6 +180,8 @@ fn note(shown: &SystemShown, factor: f64) -> String {
 /// A picture that cannot be drawn.
 pub fn preview(plan: &MechanicsPlan) -> Result<String, OutputError> {
     let shown = SystemShown::of_bodies(plan, &plan.system.start().bodies);
-    let view = View { note: "at the start".into(), ..View::of(plan, &shown) };
-    scene(plan, &shown, &view, plan.head.problem.name())
+    let view = View { note: "at the start; loads as they are at the end".into(), ..View::of(plan, &shown) };
+    // Marks are seen best on bodies without colours.
+    let view = View { scale: Scale::chosen([0.0; 2], [0.0; 2]), ..view };
+    marked_scene(plan, &shown, &view, plan.head.problem.name(), &marks(plan))
 }

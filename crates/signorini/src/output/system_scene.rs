@@ -8,11 +8,14 @@ use super::page::{Page, SIZE, Scale, Sign, clip_to, text_width};
 use super::render::{Body, Look, insert};
 use super::system::SystemShown;
 use super::system_bodies::{deformable, rigid, scale_of};
+use super::system_marks::{self, Mark};
 use super::{OutputError, system_contacts, system_names, system_plane};
 use crate::plan::mechanics::MechanicsPlan;
 use crate::problem::Space;
 use signorini_geometry::Vector;
 
+/// What is so many times higher than wide is laid down.
+const UPRIGHT: f64 = 3.0;
 /// Size of the letters of titles.
 const TITLE: f64 = 19.0;
 
@@ -36,6 +39,14 @@ pub struct View {
     /// From where it is seen, in space.
     pub from: Vector<3>,
     pub rigid: Rigid,
+    pub forces: Forces,
+}
+
+/// Whether forces at tested points are drawn: not where a body hides the points.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Forces {
+    Drawn,
+    LeftOut,
 }
 
 /// Whether rigid bodies are drawn in space.
@@ -71,6 +82,7 @@ impl View {
             is_part: false,
             from: usual(),
             rigid: Rigid::Drawn,
+            forces: Forces::Drawn,
         };
         if plan.space == Space::ThreeD {
             if shown.is_of_solids() && looks_down(shown) {
@@ -118,13 +130,21 @@ pub fn page_for<'a>(
     [title, note]: [&str; 2],
     least: f64,
 ) -> (Page, Camera) {
-    let extent = Camera::new(towards, above, points.clone(), [0.0, 0.0, 1e3, 1e3]).extent();
+    let extent_for = |above: &Vector<3>| Camera::new(towards, above, points.clone(), [0.0, 0.0, 1e3, 1e3]).extent();
+    let mut extent = extent_for(above);
+    let is_aslant = towards.x != 0.0 || towards.y != 0.0;
+    // What is long and upright lies on the page: there is more room across it.
+    let lying = towards.cross(above);
+    let mut above = above;
+    if is_aslant && extent[1] > UPRIGHT * extent[0] {
+        above = &lying;
+        extent = extent_for(above);
+    }
     let (width, height) = Page::size_for(extent);
     let page = Page::new((width.max(least), height), title, note);
     let inner = page.room();
     // In space the axes stand aside, with their names.
-    let is_plane = towards.x == 0.0 && towards.y == 0.0;
-    let area = if is_plane { inner } else { [inner[0] + 26.0, inner[1], inner[2] - 40.0, inner[3] - 6.0] };
+    let area = if !is_aslant { inner } else { [inner[0] + 26.0, inner[1], inner[2] - 40.0, inner[3] - 6.0] };
     let camera = Camera::new(towards, above, points, area);
     (page, camera)
 }
@@ -134,6 +154,20 @@ pub fn page_for<'a>(
 /// # Errors
 /// A raster without area.
 pub fn scene(plan: &MechanicsPlan, shown: &SystemShown, view: &View, title: &str) -> Result<String, OutputError> {
+    marked_scene(plan, shown, view, title, &[])
+}
+
+/// Draws a state with marks of what the case asks.
+///
+/// # Errors
+/// A raster without area.
+pub fn marked_scene(
+    plan: &MechanicsPlan,
+    shown: &SystemShown,
+    view: &View,
+    title: &str,
+    marks: &[Mark],
+) -> Result<String, OutputError> {
     let labels = Labels(plan.head.unit_names());
     if view.axes[0].x > view.axes[1].x {
         return Ok(Page::new(SIZE, title, &view.note).finish());
@@ -158,7 +192,9 @@ pub fn scene(plan: &MechanicsPlan, shown: &SystemShown, view: &View, title: &str
     if !shown.zones.is_empty() {
         key.push((Sign::Line(FRONT), "contact".into()));
     }
-    key.extend(system_contacts::draw(&mut page, shown, &camera, (view.axes[1] - view.axes[0]).max(), &labels));
+    if view.forces == Forces::Drawn {
+        key.extend(system_contacts::draw(&mut page, shown, &camera, (view.axes[1] - view.axes[0]).max(), &labels));
+    }
     if view.is_part {
         page.svg += "</g>";
     }
@@ -166,6 +202,7 @@ pub fn scene(plan: &MechanicsPlan, shown: &SystemShown, view: &View, title: &str
         system_plane::axis_of_rotation(&mut page.svg, view.room, &camera);
     }
     camera.axes(&mut page.svg, view.axes, labels.axes(plan.space).each_ref().map(String::as_str));
+    key.extend(system_marks::draw(&mut page, marks, &camera));
     page.key(&key);
     system_names::write(&mut page, shown, &camera);
     bar(&mut page, shown, &view.scale, &labels);
@@ -196,6 +233,36 @@ pub fn around_contact(shown: &SystemShown) -> Option<[Vector<3>; 2]> {
     let pad = Vector::<3>::repeat((0.5 * (high - low).max()).max(6.0 * thick));
     (!points.is_empty() && pad.x > 0.0).then(|| [low - pad, high + pad])
 }
+
+/// The box of what touches of curves, with the loops between one place and another of the same curve; none where curves
+/// touch nothing.
+pub fn around_loops(shown: &SystemShown) -> Option<[Vector<3>; 2]> {
+    let [low, high] = around_contact(shown)?;
+    let thick = shown.curves.iter().map(|c| c.radius).fold(0.0, f64::max);
+    let is_in = |x: &Vector<3>| (0..3).all(|k| low[k] <= x[k] && x[k] <= high[k]);
+    let mut corners = vec![low, high];
+    for curve in &shown.curves {
+        let inside: Vec<usize> = (0..curve.points.len()).filter(|&k| is_in(&curve.points[k])).collect();
+        if let (Some(&first), Some(&last)) = (inside.first(), inside.last()) {
+            let pad = Vector::<3>::repeat(2.0 * thick);
+            corners.extend(curve.points[first..=last].iter().flat_map(|x| [x - pad, x + pad]));
+        }
+    }
+    (!shown.curves.is_empty()).then(|| bounds(corners.iter()))
+}
+
+/// A box about the largest force between thick curves that touch along their length, so large that their sections are seen.
+pub fn around_largest(shown: &SystemShown) -> Option<[Vector<3>; 2]> {
+    let thick = shown.curves.iter().map(|c| c.radius).fold(0.0, f64::max);
+    let without = shown.contacts.iter().filter(|c| c.surface.is_none());
+    let forces = without.flat_map(|c| c.closed().into_iter().map(|k| (c.force(k).norm(), c.at(k))));
+    let (_, x) = forces.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let pad = Vector::<3>::repeat(SECTIONS * thick);
+    (thick > 0.0).then(|| [x - pad, x + pad])
+}
+
+/// Half a close view of curves that touch along their length, in radii: a few diameters to either side.
+const SECTIONS: f64 = 10.0;
 
 /// From where a face that is touched is seen, if it looks this little towards the usual side, as a cosine.
 const AVERTED: f64 = 0.2;

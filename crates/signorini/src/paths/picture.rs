@@ -8,18 +8,18 @@ use crate::output::camera::Camera;
 use crate::output::chart::{self, save, viridis};
 use crate::output::figure::exact;
 use crate::output::labels::Labels;
-use crate::output::page::{Page, Scale, Sign, text_width};
+use crate::output::page::{MARGIN, Page, Scale, Sign, text_width};
 use crate::output::panel::{Axis, Panel};
-use crate::output::render::insert;
-use crate::output::render::{Body, Look, Paint};
-use crate::output::system::CurveShown;
-use crate::output::system_bodies::tube;
+use crate::output::render::{Body, Look, Paint, insert};
+use crate::output::tube::tube;
 use crate::output::{Folder, OutputError};
 use plotters::style::RGBColor;
 use signorini_geometry::Vector;
 use std::collections::HashMap;
 
+/// The largest page, and the size of the letters of its title.
 const SIZE: (f64, f64) = (1060.0, 760.0);
+const TITLE: f64 = 19.0;
 const BODIES: [RGBColor; 3] = [RGBColor(158, 182, 214), RGBColor(226, 196, 146), RGBColor(170, 205, 170)];
 const IN_THE_AIR: RGBColor = RGBColor(70, 70, 70);
 const SLIPS: RGBColor = RGBColor(213, 30, 30);
@@ -36,22 +36,8 @@ fn pieces(line: &Line, keep: &dyn Fn(&LinePoint, &LinePoint) -> bool, scale: &Sc
         .filter(|[a, b]| keep(&line.points[*a as usize], &line.points[*b as usize]))
         .collect();
     let colours: Vec<f64> = line.points.iter().map(|p| scale.place(p.normal_force)).collect();
-    let points = line.points.iter().map(|p| p.x).collect();
-    let curve = CurveShown {
-        name: String::new(),
-        radius,
-        points,
-        arc: Vec::new(),
-        cells,
-        forces: Vec::new(),
-        elements: 0,
-        is_rope: false,
-        bending_moments: Vec::new(),
-        shear_forces: Vec::new(),
-        torques: Vec::new(),
-        unstrained_length: None,
-    };
-    tube(&curve, radius, &colours)
+    let points: Vec<Vector<3>> = line.points.iter().map(|p| p.x).collect();
+    tube(&points, &cells, radius, Paint::Field(colours))
 }
 
 /// The triangles of bodies by where they are on the page: which of them may be in front of a point.
@@ -188,11 +174,14 @@ pub fn of_paths(case: &PathCase, surfaces: &[Surface], lines: &[Line]) -> Result
     }
     bodies.retain(|b| !b.triangles.is_empty());
     let labels = Labels(case.plan.head.unit_names());
-    let mut page = Page::new(SIZE, case.name(), "");
-    let inner = page.room();
-    let area = [inner[0] + 26.0, inner[1], inner[2] - 10.0, inner[3] - 6.0];
     let corners = (0..8).map(|c| Vector::<3>::from_fn(|k, _| bounds[c >> k & 1][k]));
     let around: Vec<Vector<3>> = seen.iter().copied().chain(corners).collect();
+    // As high as what is seen asks for.
+    let extent_seen = Camera::new(&from, &up, around.iter(), [0.0, 0.0, 1e3, 1e3]).extent();
+    let size = Page::size_within(extent_seen, [SIZE.0 - MARGIN[0] - MARGIN[2], SIZE.1 - MARGIN[1] - MARGIN[3]]);
+    let mut page = Page::new((size.0.max(text_width(case.name(), TITLE) + 40.0), size.1), case.name(), "");
+    let inner = page.room();
+    let area = [inner[0] + 26.0, inner[1], inner[2] - 40.0, inner[3] - 6.0];
     let camera = Camera::new(&from, &up, around.iter(), area);
     insert(&mut page.svg, &bodies, &camera, Look::Solid)?;
     let axes = ["x", "y", "z"].map(|a| labels.length(a));

@@ -143,7 +143,9 @@ pub fn draw_to(folder: &Path, output: Option<&Path>, wanted: &Wanted) -> Result<
         },
         Path::to_path_buf,
     );
-    match atomic::write(&path, &drawn.bytes) {
+    // A run without pictures has no folder for them.
+    let folder = path.parent().filter(|_| output.is_none()).map_or(Ok(()), std::fs::create_dir_all);
+    match folder.and_then(|()| atomic::write(&path, &drawn.bytes)) {
         Ok(()) => Ok((path, drawn)),
         Err(source) => Err(ReportError::Write { path, source }),
     }

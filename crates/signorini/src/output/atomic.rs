@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a file under another name, which it then takes. Folders on the way are made.
+/// Writes a file under another name, which it then takes.
 ///
 /// # Errors
 /// What the file system says. What was written is gone then, and an earlier file stays.
@@ -11,9 +11,6 @@ pub fn write(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut part = path.to_path_buf().into_os_string();
     part.push(".part");
     let store = || -> io::Result<()> {
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent)?;
-        }
         let mut file = std::fs::File::create(&part)?;
         file.write_all(content)?;
         file.sync_all()?;

@@ -164,7 +164,9 @@ impl Folder {
         }
         let Some(folder) = &self.path else { return Ok(()) };
         let path = folder.join(name);
-        atomic::write(&path, content).map_err(|source| OutputError::Write { path, source })
+        let parent = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        let written = parent.and_then(|()| atomic::write(&path, content));
+        written.map_err(|source| OutputError::Write { path, source })
     }
 
     /// Appends a line to the log.

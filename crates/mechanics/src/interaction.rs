@@ -243,7 +243,10 @@ impl<'a> Bodies<'a> {
     ) -> Result<Option<Inside>, PlaceError> {
         let (body, state) = self.side(master);
         let are_balls = sites.iter().all(|s| s.outward.is_none());
-        if !body.is_rigid() || slave.body == master.body || (are_balls && !(is_start && self.bodies[slave.body].is_rigid())) {
+        if !body.is_rigid()
+            || slave.body == master.body
+            || (are_balls && !(is_start && self.bodies[slave.body].is_rigid()))
+        {
             return Ok(None);
         }
         let met = body.master(master.group.as_deref(), state)?;

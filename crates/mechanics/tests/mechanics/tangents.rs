@@ -77,8 +77,16 @@ fn check(
     let parts = if system.contacts[0].friction().is_some() { 3 } else { 1 };
     for own in state.multipliers.chunks_mut(parts) {
         own[0] = 0.9 + 0.05 * noise(seed);
-        // None against the slip: steps linearise as sticking what slips and would slip back.
-        own[1..].iter_mut().for_each(|t| *t = 0.0);
+        own[1..].iter_mut().for_each(|t| *t *= 0.1);
+    }
+    // What slips and would slip back is linearised as sticking: the friction of such sites is turned along their slip.
+    let [told, linearised] = [Order::First, Order::Second].map(|order| assembled(&system, &state, order).unwrap().0);
+    let own = told.len() - state.multipliers.len();
+    for (k, site) in state.multipliers.chunks_mut(parts).enumerate() {
+        let rows = own + parts * k..own + parts * (k + 1);
+        if told[rows.clone()] != linearised[rows] {
+            site[1..].iter_mut().for_each(|t| *t = -*t);
+        }
     }
     let (residual, tangent) = assembled(&system, &state, Order::Second).unwrap();
     let n = residual.len();

@@ -233,6 +233,6 @@ fn a_smooth_rope_slips_over_a_rounding() {
         let (ratio, exact) = ((list[list.len() - 1] / list[0]).ln(), 0.5 * mu * std::f64::consts::PI);
         println!("{enforcement:?}: ln T1/T0 {ratio:.6} of {exact:.6}, {iterations:?} iterations");
         assert!((ratio / exact - 1.0).abs() < 2e-3, "{ratio} {exact}");
-        assert!(iterations[0] <= 100 && iterations[1..].iter().all(|n| *n <= 30), "{iterations:?}");
+        assert!(iterations[0] <= 110 && iterations[1..].iter().all(|n| *n <= 30), "{iterations:?}");
     }
 }

@@ -50,7 +50,11 @@ impl<K: ShapeKeys> ShapeReader for Reader<'_, K> {
     fn angle(&self, value: &Value) -> Result<f64, CaseError> {
         let planner = self.0.planner();
         let angle = planner.reader.angle(value)?;
-        if angle > 0.0 { Ok(angle) } else { Err(planner.problem.error(value, format!("the value is {angle}: it must be positive"))) }
+        if angle > 0.0 {
+            Ok(angle)
+        } else {
+            Err(planner.problem.error(value, format!("the value is {angle}: it must be positive")))
+        }
     }
 
     fn cylinder_axis(&self, key: &problem::Cylinder, shape: &Shape) -> Result<Vector<3>, CaseError> {

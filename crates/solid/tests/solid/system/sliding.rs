@@ -137,3 +137,29 @@ fn a_shoe_slides_off_the_end_of_a_block() {
         assert_eq!(at(2.5), 0.0, "{test:?}");
     }
 }
+
+/// Linearised at its trial, a point that would slip back slips to and fro: sixty iterations in each increment that shifts the
+/// roller.
+#[test]
+fn a_roller_that_is_pressed_on_and_shifted_needs_few_iterations() {
+    let penalty = Enforcement::Penalty { wanted_penetration: None };
+    for (test, enforcement) in [
+        (Test::Mortar(0), Enforcement::Multiplier),
+        (Test::Sites(Sampling::Nodes), Enforcement::Multiplier),
+        (Test::Sites(Sampling::GaussPoints), penalty),
+    ] {
+        let mut system = System::default();
+        let block = rectangle([-4.0, -4.0], [4.0, 0.0], [64, 16], 1, |x| x);
+        system.bodies.push(Box::new(solid("block", block, 2, ELASTIC, StressLaw::LinearElastic)));
+        let roller = Cylinder { point: v(0.0, 20.0, 0.0), axis: v(0.0, 0.0, 1.0), radius: 20.0 };
+        let way = |t: f64| v(0.02 * (t - 1.0).max(0.0), -0.1 * t.min(1.0), 0.0);
+        system.bodies.push(Box::new(rigid(roller, way)));
+        system.supports.push(hold(0, "bottom", [Some(0.0), Some(0.0), None]));
+        touch(&mut system, [(0, "top"), (1, "")], test, enforcement, Some(0.3));
+        let (_, results) = run(&mut system, &[0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0]);
+        println!("{test:?}: {}", told(&results));
+        assert!(results.iter().all(|r| r.iterations <= 15), "{test:?}: {}", told(&results));
+        let shear = force(&results[7], 0)[0];
+        assert!(shear > 0.0 && shear < 0.3 * force(&results[7], 0)[1].abs(), "{shear}");
+    }
+}

@@ -7,7 +7,7 @@
 //! | `place` | where a point is |
 //! | `unit_square` | how a cell is cut |
 //! | `division` | cells divided into four |
-//! | `cells` | the trait [`Cells`] |
+//! | `cells` | the trait [`Cells`](crate::cells::Cells) |
 
 mod boundary;
 mod cells;

@@ -60,7 +60,7 @@ fn places_and_settings_of_renamed_keys_are_those_of_the_file() {
     let problem = read("case.toml", &case, &["bodies.b.rigid.lies=below".into()]).expect("a case");
     let told = problem.source.renamed_keys().expect("two renamed keys");
     assert!(told.contains("`lies` is now `side` (line 3)") && told.contains("migrate case.toml"), "{told}");
-    let sides = problem.bodies.iter().map(|(_, body)| serde_json::to_value(body).unwrap()["rigid"]["side"].clone());
+    let sides = problem.bodies.values().map(|body| serde_json::to_value(body).unwrap()["rigid"]["side"].clone());
     assert_eq!(sides.collect::<Vec<_>>(), ["above", "below"]);
     let told = read("case.toml", &case, &["bodies.b.rigid.lies=besides".into()]).expect_err("a word").one_line();
     assert!(told.contains("--set") && told.contains("besides"), "{told}");

@@ -56,7 +56,7 @@ fn the_gap_of_a_rough_surface_is_that_of_its_pressure() {
     for (p, c, above) in [(2e-3, 3.0, true), (0.02, 10.0, false), (0.4, 0.7, true)] {
         // The implicit function: the law holds with the gap of the trial, and its derivative is that of differences.
         let point = LawPoint { per_gap: c, duration: 0.0 };
-        let trial = p + c * rough.length * (p / rough.scale as f64).ln();
+        let trial: f64 = p + c * rough.length * (p / rough.scale).ln();
         let [found, slope] = rough.pressure(trial, &point);
         let near = |h: f64| rough.pressure(trial + h, &point)[0];
         assert!((found / p - 1.0).abs() < 1e-12 && (slope - (near(1e-6) - near(-1e-6)) / 2e-6).abs() < 1e-7, "{above}");

@@ -52,3 +52,12 @@ def test_what_cannot_be_written_is_told(tmp_path):
     result = sg.run(sg.gallery("string"), pictures=False)
     with pytest.raises(sg.OutputError, match="help"):
         result.report(tmp_path / "nothing" / "page.html")
+
+
+def test_pictures_are_drawn_from_results(tmp_path):
+    result = sg.run(sg.gallery("string"), tmp_path / "out", pictures=False)
+    picture = result.draw(tmp_path / "a.png", field="contact_pressure", time="last")
+    assert picture.startswith(b"\x89PNG") and (tmp_path / "a.png").read_bytes() == picture
+    assert sg.draw(tmp_path / "out", field="contact_pressure").startswith(b"\x89PNG")
+    with pytest.raises(sg.OutputError, match="no field `pressure`"):
+        sg.draw(tmp_path / "out", field="pressure")

@@ -57,7 +57,8 @@ impl Contact {
                     continue;
                 }
             };
-            let found = self.traction(k, &touch, at, (redistributed, linearises));
+            // Along a curve that is drawn the tension tells which way points slip: what one does not hold the next one has to.
+            let found = self.traction(k, &touch, at, (redistributed, linearises && !is_curve));
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             let on_slave = found.axes[0] * t1 + found.axes[1] * t2;

@@ -1,5 +1,5 @@
-//! The law of a contact and its enforcement at points: from measures to tractions. Sites, nodes of mortar and points of curves
-//! have it in common.
+//! The law of a contact and its enforcement at points: from measures to tractions. Sites and nodes of mortar have it in
+//! common; curves and discs, whose points are found anew in every state, have law, enforcement and times here.
 //!
 //! At every point, with gap `g`, slip `e` since the last state and the traction `λ` (pressure, and two components of friction
 //! along axes), which is an unknown:
@@ -57,8 +57,8 @@ pub(crate) struct PointMeasure {
     pub base: Option<[f64; 3]>,
     /// Friction besides that of the trial about which the law is linearised.
     pub besides: [f64; 2],
-    /// Whether the law is linearised for a step of Newton's method.
-    pub linearises: bool,
+    /// Whether what would slip back is linearised as sticking, for a step of Newton's method.
+    pub sticks_first: bool,
 }
 
 /// Share of the limit of friction within which a point is at it, as what slipped is when the next increment starts. Either
@@ -104,7 +104,7 @@ impl ContactLaw {
 
     /// Whether the tractions are unknowns and hold exactly.
     pub(crate) fn is_exact(&self) -> bool {
-        self.enforcement == Enforcement::Multiplier && !self.kept.is_empty()
+        self.enforcement.is_exact() && !self.kept.is_empty()
     }
 
     /// The traction of each unknown per gap, and the area of its point.
@@ -148,12 +148,12 @@ impl ContactLaw {
         let point = LawPoint { per_gap: c, duration: self.duration() };
         let project = |trial: [f64; 3]| law.traction(trial, &point);
         let mut besides = measure.besides;
-        let about = |i: usize, besides: [f64; 2]| if slides[i] { trial(i) + besides[i] } else { 0.0 };
-        let mut projected = project([pressing, about(0, besides), about(1, besides)]);
+        let about = |i: usize| if slides[i] { trial(i) + measure.besides[i] } else { 0.0 };
+        let mut projected = project([pressing, about(0), about(1)]);
         // What slips one way does not slip back in the next step: it sticks first. Else steps send it to and fro.
         // The friction of what pulls in an iterate tells no direction.
         let back = unknown[0] > 0.0 && (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
-        if measure.linearises && besides == [0.0; 2] && projected.status == Status::Slip && back {
+        if measure.sticks_first && projected.status == Status::Slip && back {
             besides = [-trial(0), -trial(1)];
             projected = project([pressing, 0.0, 0.0]);
         }

@@ -178,8 +178,13 @@ impl Mortar {
         let slides = [1, 2].map(|slot| self.law.slots().contains(&slot));
         // What was not matched at the last state has no slip, and no friction yet.
         let slides = self.sees(k, measure.matched).then_some(slides);
-        let measure =
-            PointMeasure { gap: measure.gap, slip: measure.slip, slides, linearises, ..PointMeasure::default() };
+        let measure = PointMeasure {
+            gap: measure.gap,
+            slip: measure.slip,
+            slides,
+            sticks_first: linearises,
+            ..PointMeasure::default()
+        };
         self.law.traction(k, unknown, &measure).0
     }
 }

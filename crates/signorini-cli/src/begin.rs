@@ -84,9 +84,7 @@ fn migrated(file: &Path) -> Result<Vec<Renamed>, CaseError> {
     let (text, mut renamed) = modernised(&text);
     renamed.sort_by_key(|key| key.line);
     if !renamed.is_empty() {
-        atomic::write(file, text.as_bytes()).map_err(|error| {
-            CaseError::new(format!("cannot write `{name}`: {error}")).help("check that this program may write there")
-        })?;
+        atomic::write(file, text.as_bytes()).map_err(|error| not_written(file, &error))?;
     }
     Ok(renamed)
 }
@@ -96,8 +94,8 @@ fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> std::io::Result<()> 
     files.iter().try_for_each(|(name, text)| std::fs::write(folder.join(name), text))
 }
 
-fn not_written(folder: &Path, error: &std::io::Error) -> CaseError {
-    CaseError::new(format!("cannot write `{}`: {error}", folder.display()))
+fn not_written(path: &Path, error: &std::io::Error) -> CaseError {
+    CaseError::new(format!("cannot write `{}`: {error}", path.display()))
         .help("check that this program may write there")
 }
 

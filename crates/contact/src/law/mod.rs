@@ -87,7 +87,7 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// `ζ = λ - c g`: `p` with `p = f((p - ζ)/c)`, which is increasing in `ζ` if `f` is decreasing.
     fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {
         let _ = point;
-        if trial > 0.0 { [trial, 1.0] } else { [0.0, 0.0] }
+        unilateral(trial)
     }
 
     /// The largest gap across which it transmits a traction.
@@ -152,14 +152,18 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// The traction without friction: the trial of the pressure, if it presses.
+/// The pressure of bodies that may not penetrate, with its derivative: its trial, if that presses.
+fn unilateral(trial: f64) -> [f64; 2] {
+    if trial > 0.0 { [trial, 1.0] } else { [0.0, 0.0] }
+}
+
+/// The traction without friction.
 pub fn frictionless(trial: f64) -> Projected {
-    if trial > 0.0 {
-        let mut out = Projected { traction: [trial, 0.0, 0.0], status: Status::Slip, ..Projected::default() };
-        out.derivative[0][0] = 1.0;
-        return out;
-    }
-    Projected::default()
+    let [pressure, slope] = unilateral(trial);
+    let mut out = Projected { traction: [pressure, 0.0, 0.0], ..Projected::default() };
+    out.derivative[0][0] = slope;
+    out.status = if slope > 0.0 { Status::Slip } else { Status::Open };
+    out
 }
 
 /// A law that several contacts share.

@@ -64,10 +64,10 @@ impl Contact {
             let on_slave = found.axes[0] * t1 + found.axes[1] * t2;
             let n = pair.unknowns.len();
             for (a, &unknown) in pair.unknowns.iter().enumerate() {
-                let has_friction = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
-                let force = -w * p * pair.opening[a] + has_friction;
+                let friction = if parts == 3 { w * on_slave.dot(&pair.slip[a]) } else { 0.0 };
+                let force = -w * p * pair.opening[a] + friction;
                 out.residual[unknown as usize] += force;
-                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + has_friction.abs();
+                out.sizes[unknown as usize] += (w * p * pair.opening[a]).abs() + friction.abs();
             }
             self.law.add_equations(k, own(0), at, Some(&found.projected), out);
             let Some(tangent) = out.tangent.as_mut().filter(|_| found.projected.status != Status::Open) else {

@@ -24,7 +24,7 @@ impl Contact {
         k: usize,
         touch: &MeasuredPair,
         unknown: [f64; 3],
-        (redistributed, linearises): ([f64; 2], bool),
+        (redistributed, sticks_first): ([f64; 2], bool),
     ) -> Traction {
         let pair = &touch.pair;
         let has_friction = self.law.friction.is_some();
@@ -39,7 +39,7 @@ impl Contact {
             slides: Some(slides),
             base: touch.stress.as_ref().map(|s| s.base(&pair.normal, &axes)),
             besides: redistributed,
-            linearises,
+            sticks_first,
         };
         let (projected, trial) = self.law.traction(k, unknown, &measure);
         Traction { projected, axes, d_axes, slip, trial }

@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::chart::word;
+use super::colours::{BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION};
 use super::page::{Page, Sign, css};
 use crate::plan::mechanics::MechanicsPlan;
 use plotters::style::RGBColor;
@@ -11,15 +12,8 @@ use std::fmt::Write as _;
 
 const SUPPORT: RGBColor = RGBColor(20, 90, 50);
 const LOAD: RGBColor = RGBColor(190, 30, 30);
-/// Of contacts, in the order of the case: told apart by colour-blind eyes (Okabe and Ito).
-const CONTACTS: [RGBColor; 6] = [
-    RGBColor(230, 159, 0),
-    RGBColor(0, 114, 178),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(213, 94, 0),
-];
+/// Of contacts, in the order of the case.
+const CONTACTS: [RGBColor; 6] = [ORANGE, BLUE, GREEN, PURPLE, SKY, VERMILION];
 /// More marks of one support or load hide the body, and more dots of a contact each other.
 const MARKS: usize = 12;
 const DOTS: usize = 400;

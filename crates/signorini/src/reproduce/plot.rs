@@ -2,18 +2,10 @@
 
 use crate::output::OutputError;
 use crate::output::chart::{FONT, failed, label, padded, range, rounded, svg};
+use crate::output::colours::{BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION};
 use plotters::prelude::*;
 
-/// Colours that are told apart in print and by colour-blind eyes (M. Okabe & K. Ito).
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(60, 60, 60),
-];
+const COLORS: [RGBColor; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, RGBColor(60, 60, 60)];
 
 /// The drawing library knows whole units only: it draws that much larger than what is shown.
 const FINE: u32 = 4;

@@ -139,7 +139,8 @@ impl Reader<'_> {
         if let Value::Text(text) = value
             && let Some(number) = text.trim_end().strip_suffix("deg").or_else(|| text.trim_end().strip_suffix('°'))
         {
-            let degrees: f64 = number.trim().parse().map_err(|_| {
+            let finite = number.trim().parse().ok().filter(|degrees: &f64| degrees.is_finite());
+            let degrees = finite.ok_or_else(|| {
                 let message = format!("`{}` is not an angle in degrees", number.trim());
                 self.error(value, message).help("give radians, or for example \"25 deg\"")
             })?;

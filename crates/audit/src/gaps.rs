@@ -70,6 +70,10 @@ fn across(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
         (jet.gap, 2.0 * UNLIKE * sagitta + REFUSED * cell, t.x)
     };
     let carrying = state.contacts[number].iter().filter(|t| t.is_closed && t.pressure > 0.0);
+    // What acts across gaps by its law is checked by its tractions.
+    if contact.surfaces.range > 0.0 {
+        return None;
+    }
     let (gap, limit, x) = carrying.map(gap).max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
     let outcome = if gap > limit { Outcome::Refused } else { return None };
     let message = format!("`{}` has a contact force across a gap of {gap:.3e}", contact.name);
@@ -102,7 +106,7 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
     let list =
         samples::of_body(form, &state.bodies[own], rigid, &|x| if own == other { 0.0 } else { obstacle.at_least(x) });
     let closed = Closed::new(state, contact);
-    let wanted = setting.contacts[contact].wanted_penetration;
+    let wanted = setting.contacts[contact].wanted_penetration + given_way(setting, state, contact);
     let zone = extent_of(&closed.places);
     let largest = if let Form::Solid(solid) = form { solid.largest_cell() } else { 0.0 };
     let judge_one = |s: &Sample| {
@@ -114,6 +118,16 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
     // In order, so that of equal ones it is always the same that is told.
     let judged: Vec<Deepest> = list.par_iter().filter_map(judge_one).collect();
     judged.into_iter().max_by(by_excess)
+}
+
+/// How deep rough surfaces are pressed into each other by their pressure, and how much is worn off.
+fn given_way(setting: &Setting, state: &State, contact: usize) -> f64 {
+    let touches = || state.contacts.get(contact).into_iter().flatten();
+    let pressed = setting.contacts[contact].surfaces.gap_at.as_ref().map_or(0.0, |gap_at| {
+        let most = touches().map(|t| t.pressure).fold(0.0, f64::max);
+        if most > 0.0 { (-gap_at(most)).max(0.0) } else { 0.0 }
+    });
+    pressed + touches().map(|t| t.worn).fold(0.0, f64::max)
 }
 
 /// Places of a contact that carry.

@@ -41,7 +41,7 @@ pub use bounds::{ForceBounds, bounds};
 pub use finding::{Check, Finding, Outcome, worst};
 pub use stability::Stability;
 pub use state::{
-    Acting, Body, Carries, Contact, Curve, Form, Law, Placement, Rigid, Setting, Solid, Space, State, Touch,
+    Acting, Body, Carries, Contact, Curve, Form, Law, Placement, Rigid, Setting, Solid, Space, State, Surfaces, Touch,
 };
 pub use verdict::{Answer, Verdict};
 

@@ -65,7 +65,8 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     if at_once && gaps::check(setting, before).iter().any(|f| f.value.is_none_or(|depth| depth > 0.0)) {
         return None;
     }
-    let dissipated: f64 = now.dissipated.iter().flatten().sum();
+    let [taken, uncertain] = by_surfaces(setting, before, now)?;
+    let dissipated = now.dissipated.iter().flatten().sum::<f64>() + taken;
     let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
     let mut add = |[w, o]: [f64; 2]| {
         work += w;
@@ -96,6 +97,7 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         a.iter().zip(b).map(|(a, b)| (rubs(a) - rubs(b)).norm()).sum()
     };
     off += 0.5 * slips * before.contacts.iter().zip(&now.contacts).map(changed).sum::<f64>();
+    off += uncertain;
     let kept: f64 = [before, now].iter().flat_map(|s| &s.contacts).map(|list| elastic(list)).sum();
     let size = size + stored.abs() + dissipated.abs();
     let limit = off + kept + LEFT * size + STORED * now.stored?.abs() + ROUNDING * forces(setting, now);
@@ -126,6 +128,27 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     );
     let finding = Finding::new(Check::Path, outcome, message).measured(missing.abs(), limit);
     Some(Finding { remedy: remedy.map(str::to_string), ..finding })
+}
+
+/// The work that goes into surfaces that hold each other, give way or wear, and how far it may be off; none where the places of
+/// before are others.
+fn by_surfaces(setting: &Setting, before: &State, now: &State) -> Option<[f64; 2]> {
+    let mut out = [0.0; 2];
+    for ((contact, old), new) in setting.contacts.iter().zip(&before.contacts).zip(&now.contacts) {
+        if !contact.surfaces.take_work() {
+            continue;
+        }
+        if old.len() != new.len() {
+            return None;
+        }
+        for (a, b) in old.iter().zip(new) {
+            // The way between the bodies, which wear lengthens.
+            let closed = (a.gap() - a.worn) - (b.gap() - b.worn);
+            out[0] += 0.5 * (a.pressure * a.weight + b.pressure * b.weight) * closed;
+            out[1] += 0.5 * ((b.pressure * b.weight - a.pressure * a.weight) * closed).abs();
+        }
+    }
+    Some(out)
 }
 
 /// The work that the prescribed motion of a rigid body does against its contacts, how far it may be off, and whether it moves.

@@ -147,6 +147,27 @@ pub struct Contact {
     pub wanted_penetration: f64,
     /// Whether forces act at the places that are told, so that moments of them make sense.
     pub at_places: bool,
+    pub surfaces: Surfaces,
+}
+
+/// What surfaces do besides keeping each other out and rubbing.
+#[derive(Clone, Default)]
+pub struct Surfaces {
+    /// The largest traction against opening, and that along the surface without pressure.
+    pub strength: [f64; 2],
+    /// The largest gap across which they act.
+    pub range: f64,
+    /// The gap at a pressure of rough ones.
+    pub gap_at: Option<Arc<dyn Fn(f64) -> f64 + Send + Sync>>,
+    /// Depth that is worn off per pressure and slip.
+    pub wear: f64,
+}
+
+impl Surfaces {
+    /// Whether work goes into them besides that of friction.
+    pub fn take_work(&self) -> bool {
+        self.strength[0] > 0.0 || self.wear > 0.0 || self.gap_at.is_some()
+    }
 }
 
 /// What pressure and friction of a contact are per.
@@ -229,9 +250,16 @@ pub struct Touch {
     pub friction: Vector<3>,
     /// Slip of the first body along the other in the increment.
     pub slip: Vector<3>,
+    /// Depth that was worn off since the start. The foot is that on the worn surface.
+    pub worn: f64,
 }
 
 impl Touch {
+    /// The gap between the surfaces, worn as they are.
+    pub fn gap(&self) -> f64 {
+        (self.x - self.foot).dot(&self.normal)
+    }
+
     /// The force on the first body.
     pub fn force(&self) -> Vector<3> {
         (self.normal * self.pressure + self.friction) * self.weight

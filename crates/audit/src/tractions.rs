@@ -1,5 +1,6 @@
 //! Whether the tractions that were told are those of contact: pressure pushes, friction stays within its limit, is at it where
-//! bodies slip, and acts against the slip. All in the mean over a contact, by what each place stands for.
+//! bodies slip, and acts against the slip; whether rough surfaces are as far apart as their pressure says, and worn ones by as
+//! much as Archard's law says. All in the mean over a contact, by what each place stands for.
 
 use crate::finding::{Check, Finding, Outcome};
 use crate::state::{Contact, Form, Law, Setting, State, Touch};
@@ -85,15 +86,33 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64, refused: f64) 
             None => finding,
         });
     };
-    tell(part(touches, |t| (-t.pressure).max(0.0), |_| size), [TOLD, REFUSED], "the contact force is tensile");
-    let available = |t: &Touch| contact.law.map_or(0.0, |law| law.most(t.pressure.max(0.0)));
-    let whole =
-        |_: f64| if contact.law.is_some() { touches.iter().map(|t| t.weight * available(t)).sum() } else { size };
+    let surfaces = &contact.surfaces;
+    let [strength, bond] = surfaces.strength;
+    let pulls = if strength > 0.0 {
+        "the contact force pulls by more than the strength"
+    } else {
+        "the contact force is tensile"
+    };
+    tell(part(touches, |t| (-t.pressure - strength).max(0.0), |_| size), [TOLD, REFUSED], pulls);
+    let available = |t: &Touch| bond + contact.law.map_or(0.0, |law| law.most(t.pressure.max(0.0)));
+    let whole = |_: f64| match contact.law.is_some() || bond > 0.0 {
+        true => touches.iter().map(|t| t.weight * available(t)).sum(),
+        false => size,
+    };
+    if let Some(gap_at) = &surfaces.gap_at {
+        // By gaps, as a pressure that follows from them may be steep in them.
+        let depth = |t: &Touch| gap_at(t.pressure.max(f64::MIN_POSITIVE)).abs();
+        let off = |t: &Touch| if t.pressure > 0.0 { t.pressure * (t.gap() - gap_at(t.pressure)).abs() } else { 0.0 };
+        let all: f64 = touches.iter().map(|t| t.weight * t.pressure.max(0.0)).sum();
+        let largest = touches.iter().filter(|t| t.pressure > 0.0).map(depth).fold(f64::MIN_POSITIVE, f64::max);
+        tell(part(touches, off, |_| largest * all), [TOLD, REFUSED], "the gap is not that of its pressure");
+    }
     let beyond = |t: &Touch| (t.friction.norm() - available(t)).max(0.0);
     tell(part(touches, beyond, whole), [TOLD, REFUSED], "the friction exceeds its limit");
     let slipping: Vec<Touch> = touches.iter().filter(|t| t.slips && t.slip.norm() > 0.0).copied().collect();
     let taken = |t: &Touch| t.friction.norm() * t.slip.norm();
-    let wrong = |t: &Touch| t.friction.dot(&t.slip).max(0.0);
+    // What a bond holds acts against all of its slip, and may act along that of the increment.
+    let wrong = |t: &Touch| if bond > 0.0 { 0.0 } else { t.friction.dot(&t.slip).max(0.0) };
     let all: f64 = slipping.iter().map(|t| t.weight * taken(t)).sum();
     tell(
         part(&slipping, wrong, |_| all),
@@ -102,6 +121,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64, refused: f64) 
     );
     if let Some(Law::PerPressure([a, b])) = contact.law
         && a == b
+        && bond == 0.0
     {
         let could = |t: &Touch| available(t) * t.slip.norm();
         // At the edge little is available, and what has just closed slipped before it touched.

@@ -2,7 +2,7 @@
 
 use signorini_audit::{
     Acting, Body, Carries, Check, Contact, Form, Law, Outcome, Placement, Rigid, Setting, Space, Stability, State,
-    Touch, audited, bounds,
+    Surfaces, Touch, audited, bounds,
 };
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::GapJet;
@@ -128,6 +128,7 @@ impl Case {
             carries: Carries::Force,
             wanted_penetration: 0.0,
             at_places: true,
+            surfaces: Surfaces::default(),
         };
         let rest = Placement::Moved(RigidMotion::new(V::zeros(), Point::<3>::zeros(), V::zeros()));
         let state = State {

@@ -2,7 +2,7 @@
 
 use signorini_audit::{
     Acting, Body, Boundary, Carries, Check, Contact, Curve, Form, Law, Placement, Rigid, Setting, Solid, Space,
-    Stability, State, Touch, Verdict, audit, gaps,
+    Stability, State, Surfaces, Touch, Verdict, audit, gaps,
 };
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{Cylinder, Plane, RigidShape, Sphere};
@@ -65,6 +65,7 @@ fn contact(carries: Carries, law: Option<Law>) -> Contact {
         carries,
         wanted_penetration: 0.0,
         at_places: true,
+        surfaces: Surfaces::default(),
     }
 }
 

@@ -148,6 +148,7 @@ impl Contact {
         self.law.stiffness = filtered(&self.law.stiffness, kept);
         self.law.areas = filtered(&self.law.areas, kept);
         self.law.kept = filtered(&self.law.kept, kept);
+        self.law.history = filtered(&self.law.history, kept);
         self.memory = filtered(&self.memory, kept);
     }
 
@@ -178,7 +179,7 @@ impl Contact {
         let anchor = master.at(&partner.point);
         let with = |order| {
             let mut pair = partner.pair(&placed, &anchor, sides.first, order);
-            if self.law.friction.is_some() {
+            if self.law.is_tangential() {
                 partner.add_slip(&placed, &anchor, &mut pair);
             }
             self.with_stress(k, sides, pair)
@@ -222,7 +223,7 @@ impl Contact {
         };
         let Some(met) = met else { return (placed, None) };
         // Pairs that are kept have slips of their own.
-        let friction = self.law.friction.is_some() && self.pairing == Pairing::Now;
+        let friction = self.law.is_tangential() && self.pairing == Pairing::Now;
         let stuck = self.memory[k].stuck.filter(|_| friction);
         let anchor: Option<(Stuck, Anchor)> = stuck.map(|s| (s, master.at(&s.point)));
         let encounter = PairGeometry {
@@ -249,7 +250,7 @@ impl Contact {
             stress.map_or(f64::INFINITY, |s| s.vector.norm())
         });
         let pressing = self.law.pressing(k, unknown[0], base);
-        (pressing / self.law.stiffness[k]).max(0.0) + self.law.friction.as_ref().map_or(0.0, |law| law.range())
+        self.law.farthest(k, pressing)
     }
 
     fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> MeasuredPair {

@@ -18,7 +18,8 @@ use signorini_contact::{Law, Status};
 /// The law of a contact, how it is enforced, and the tractions of its points.
 #[derive(Debug)]
 pub struct ContactLaw {
-    /// Without it the sides slide freely.
+    /// Friction, and the pressure where it is another one than that of bodies that may not penetrate. Without it the sides slide
+    /// freely.
     pub friction: Option<Box<dyn Law>>,
     pub enforcement: Enforcement,
     /// The component of friction that a plane problem has; both in space.
@@ -31,6 +32,10 @@ pub struct ContactLaw {
     pub(crate) softness: f64,
     /// The traction of each point at the last state, with friction along its axes: `λ_0`.
     pub(crate) kept: Vec<[f64; 3]>,
+    /// What else each point remembers.
+    pub(crate) history: Vec<PointHistory>,
+    /// Whether no state was accepted yet.
+    is_new: bool,
     /// Times of the last state and of the one that is looked for.
     pub times: [f64; 2],
     /// What is stated, while a start is looked for with something simpler.
@@ -46,11 +51,22 @@ struct Stated {
     softness: f64,
 }
 
+/// What a point remembers beside its traction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PointHistory {
+    /// The largest opening of a law that holds surfaces together.
+    pub opened: f64,
+    /// What is worn off; less the gap at the start of what is bonded there.
+    pub offset: f64,
+}
+
 /// What the law is given at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointMeasure {
     pub gap: f64,
     pub slip: [f64; 2],
+    /// Slip of all increments before this one.
+    pub slipped: [f64; 2],
     /// Along which axes the sides may slide; none where there is no friction yet, as they were apart at the last state.
     pub slides: Option<[bool; 2]>,
     /// The traction to give way from, where it is not that of the last state.
@@ -66,6 +82,10 @@ pub(crate) struct PointMeasure {
 /// point. More than the tolerance of Newton's method, which ends that near to the limit.
 const AT_LIMIT: f64 = 1e-7;
 
+/// Gap at the start, relative to the width of a point, up to which a bond holds: more than meshes that do not match leave
+/// between curved surfaces.
+const BONDED: f64 = 0.02;
+
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
 /// points of a stiff body carry together need not be unique.
 const UNDETERMINED: f64 = 1e-6;
@@ -80,6 +100,8 @@ impl ContactLaw {
             in_plane: None,
             softness: enforcement.softness(),
             kept: vec![[0.0; 3]; stiffness.len()],
+            history: vec![PointHistory::default(); stiffness.len()],
+            is_new: true,
             stiffness,
             areas,
             times: [0.0; 2],
@@ -94,12 +116,64 @@ impl ContactLaw {
 
     /// Which components of a traction are unknowns: 0 is the pressure.
     pub(crate) fn slots(&self) -> &'static [usize] {
-        match (&self.friction, self.in_plane) {
-            (None, _) => &[0],
-            (Some(_), None) => &[0, 1, 2],
-            (Some(_), Some(0)) => &[0, 1],
-            (Some(_), Some(_)) => &[0, 2],
+        match (self.is_tangential(), self.in_plane) {
+            (false, _) => &[0],
+            (true, None) => &[0, 1, 2],
+            (true, Some(0)) => &[0, 1],
+            (true, Some(_)) => &[0, 2],
         }
+    }
+
+    /// Whether there are tractions along the surface.
+    pub(crate) fn is_tangential(&self) -> bool {
+        self.friction.as_ref().is_some_and(|law| law.is_tangential())
+    }
+
+    /// The gap that is told of a point, and what is worn off there.
+    pub(crate) fn gap_and_wear(&self, measured: f64, next: &PointHistory) -> (Option<f64>, f64) {
+        let wears = self.friction.as_ref().is_some_and(|law| law.wear() > 0.0);
+        (Some(measured + next.offset), if wears { next.offset } else { 0.0 })
+    }
+
+    /// The gap up to which a point carries under a trial of its pressure.
+    pub(crate) fn farthest(&self, k: usize, pressing: f64) -> f64 {
+        let range = self.friction.as_ref().map_or(0.0, |law| law.range());
+        (pressing / self.stiffness[k]).max(0.0) + range - self.history[k].offset
+    }
+
+    /// What a point remembers of a state with these trials; without them nothing met it there.
+    pub(crate) fn remembered(&self, k: usize, at: Option<(&PointMeasure, [f64; 3], &Projected)>) -> PointHistory {
+        let before = self.history[k];
+        let Some(law) = self.friction.as_ref().filter(|law| law.is_bond() || law.wear() > 0.0) else { return before };
+        if self.is_new && law.is_bond() {
+            let width = self.areas[k].powf(if self.in_plane.is_some() { 1.0 } else { 0.5 });
+            return match at {
+                Some((measure, ..)) if measure.gap.abs() <= BONDED * width => {
+                    PointHistory { offset: -measure.gap, ..before }
+                }
+                _ => PointHistory { opened: f64::MAX, ..before },
+            };
+        }
+        let Some((measure, trial, projected)) = at else { return before };
+        let opening = law.opening(trial, &self.point(k, measure));
+        let worn = law.wear() * projected.traction[0] * measure.slip[0].hypot(measure.slip[1]);
+        PointHistory { opened: before.opened.max(opening), offset: before.offset + worn }
+    }
+
+    /// What the law is told of a point besides its trial.
+    fn point(&self, k: usize, measure: &PointMeasure) -> LawPoint {
+        LawPoint {
+            per_gap: self.stiffness[k],
+            duration: self.duration(),
+            opened: self.history[k].opened,
+            slipped: measure.slipped,
+        }
+    }
+
+    /// Raises the scales of trials to what the law asks for.
+    pub(crate) fn steepen(&mut self) {
+        let least = self.friction.as_ref().map_or(0.0, |law| law.least_scale());
+        self.stiffness.iter_mut().for_each(|c| *c = c.max(least));
     }
 
     /// Whether the tractions are unknowns and hold exactly.
@@ -135,17 +209,20 @@ impl ContactLaw {
         unknown - self.softness * (unknown - base.unwrap_or_else(|| self.base(k)[0]))
     }
 
-    /// The traction of a point by the law, and the trial of its friction.
-    pub(crate) fn traction(&self, k: usize, unknown: [f64; 3], measure: &PointMeasure) -> (Projected, [f64; 2]) {
+    /// The traction of a point by the law, and its trial.
+    pub(crate) fn traction(&self, k: usize, unknown: [f64; 3], measure: &PointMeasure) -> (Projected, [f64; 3]) {
         let c = self.stiffness[k];
         let base = measure.base.unwrap_or_else(|| self.base(k));
         let lambda: [f64; 3] = std::array::from_fn(|i| unknown[i] - self.softness * (unknown[i] - base[i]));
-        let pressing = lambda[0] - c * measure.gap;
-        let (Some(law), Some(slides)) = (&self.friction, measure.slides) else {
-            return (frictionless(pressing), [0.0; 2]);
+        let pressing = lambda[0] - c * (measure.gap + self.history[k].offset);
+        let Some(law) = &self.friction else { return (frictionless(pressing), [pressing, 0.0, 0.0]) };
+        let slides = match measure.slides {
+            Some(slides) => slides,
+            None if law.is_compliant() => [false; 2],
+            None => return (frictionless(pressing), [pressing, 0.0, 0.0]),
         };
         let trial = |i: usize| if slides[i] { lambda[i + 1] + c * measure.slip[i] } else { 0.0 };
-        let point = LawPoint { per_gap: c, duration: self.duration() };
+        let point = self.point(k, measure);
         let project = |trial: [f64; 3]| law.traction(trial, &point);
         let mut besides = measure.besides;
         let about = |i: usize| if slides[i] { trial(i) + measure.besides[i] } else { 0.0 };
@@ -153,7 +230,7 @@ impl ContactLaw {
         // What slips one way does not slip back in the next step: it sticks first. Else steps send it to and fro.
         // The friction of what pulls in an iterate tells no direction.
         let back = unknown[0] > 0.0 && (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
-        if measure.sticks_first && projected.status == Status::Slip && back {
+        if measure.sticks_first && projected.status == Status::Slip && back && law.least_scale() == 0.0 {
             besides = [-trial(0), -trial(1)];
             projected = project([pressing, 0.0, 0.0]);
         }
@@ -170,7 +247,7 @@ impl ContactLaw {
             let more = |a: usize| d[1 + a][1] * besides[0] + d[1 + a][2] * besides[1];
             (0..2).for_each(|a| projected.traction[1 + a] -= more(a));
         }
-        (projected, [trial(0), trial(1)])
+        (projected, [pressing, trial(0), trial(1)])
     }
 
     /// Adds the equations of a point, without what other unknowns change in them; `row` is the number of the first. A point of
@@ -210,6 +287,7 @@ impl ContactLaw {
     /// Takes the tractions of a state from which the next increment starts.
     pub fn accept(&mut self, tractions: Vec<[f64; 3]>) {
         self.kept = tractions;
+        self.is_new = false;
         self.times[0] = self.times[1];
     }
 
@@ -238,8 +316,9 @@ impl ContactLaw {
 
     /// Scales the stiffness of trials, not that of penalties: whether there are trials to scale.
     pub(crate) fn scale_trials(&mut self, factor: f64) -> bool {
-        // Nitsche's method has its stiffness in the state.
-        if self.enforcement.takes_stress() || self.kept.is_empty() {
+        // Nitsche's method has its stiffness in the state, and a law that softens asks for one of its own.
+        let softens = self.friction.as_ref().is_some_and(|law| law.least_scale() > 0.0);
+        if self.enforcement.takes_stress() || self.kept.is_empty() || softens {
             return false;
         }
         self.stiffness.iter_mut().for_each(|c| *c *= factor);

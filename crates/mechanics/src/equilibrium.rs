@@ -15,6 +15,8 @@ use signorini_solve::schwarz::Inverses;
 
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;
+/// Rounding of a gap relative to the size of all bodies: of the operations on positions that lead to it.
+const GAP: f64 = 16.0 * f64::EPSILON;
 /// Rounding of positions that were solved for, relative to the size of the bodies.
 pub(crate) const ROUNDING: f64 = 1e-12;
 /// Stiffness of what has none, relative to the largest, by which residuals are compared.
@@ -78,10 +80,13 @@ impl Problem<'_> {
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
         let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
+        // At finite strain a step that turns material stretches it, and what is nearly incompressible takes that for a change of
+        // its volume: the step after it corrects that.
+        let bends = self.system.bodies.iter().any(|b| !b.is_rigid() && !b.is_linear());
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
         let search = if self.goes_down {
             Search::Energy
-        } else if predicts || !self.metric.is_empty() {
+        } else if predicts || bends || !self.metric.is_empty() {
             Search::Watchdog { patience: PATIENCE }
         } else {
             Search::Monotone
@@ -256,10 +261,11 @@ impl Equations for Problem<'_> {
             let kind = usize::from(self.is_spin[k]);
             take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(rounding[kind]), k);
         }
-        for (k, [c, _]) in self.rows.iter().enumerate() {
+        for (k, [c, w]) in self.rows.iter().enumerate() {
             // Gaps no better than the rounding of positions.
             let force = out.residual[count + k].abs() * c;
-            take(force / (TOLERANCE * scale[0]).max(rounding[0]), count + k);
+            let of_gap = c * w * GAP * size * away;
+            take(force / (TOLERANCE * scale[0]).max(rounding[0]).max(of_gap), count + k);
         }
         for held in out.single.iter().chain(&out.coupled) {
             take(held.constraint.violation.abs() / (ROUNDING * size), held.constraint.terms[0].0 as usize);

@@ -148,9 +148,9 @@ impl dyn Interaction + '_ {
         self.unload();
     }
 
-    /// The law of friction; none if there is none.
+    /// The law of what acts along the surface; none if nothing does.
     pub fn friction(&self) -> Option<&dyn Law> {
-        self.law().friction.as_deref()
+        self.law().friction.as_deref().filter(|law| law.is_tangential())
     }
 }
 

@@ -33,7 +33,7 @@ mod small;
 mod terms;
 
 use crate::body::{Body, BodyState, PlaceError};
-use crate::contact_law::{ContactLaw, PointMeasure};
+use crate::contact_law::{ContactLaw, PointHistory, PointMeasure};
 use crate::enforcement::Enforcement;
 use crate::pair::AxisChoice;
 use crate::part::Part;
@@ -170,21 +170,34 @@ impl Mortar {
         self.law.in_plane = self.nodes.is_plane().then(|| usize::from(self.is_across()));
     }
 
-    /// The traction of a node by its law.
-    fn traction(&self, k: usize, measure: &NodeMeasure, unknown: [f64; 3], linearises: bool) -> Projected {
+    /// The traction of a node by its law, and what it remembers of it.
+    fn traction(
+        &self,
+        k: usize,
+        measure: &NodeMeasure,
+        unknown: [f64; 3],
+        linearises: bool,
+    ) -> (Projected, PointHistory) {
         if !self.sees(k, measure.weight) {
-            return Projected::default();
+            return (Projected::default(), self.law.remembered(k, None));
         }
+        let point = self.point(k, measure, linearises);
+        let (projected, trial) = self.law.traction(k, unknown, &point);
+        (projected, self.law.remembered(k, Some((&point, trial, &projected))))
+    }
+
+    /// What its law is given at a node.
+    fn point(&self, k: usize, measure: &NodeMeasure, linearises: bool) -> PointMeasure {
         let slides = [1, 2].map(|slot| self.law.slots().contains(&slot));
         // What was not matched at the last state has no slip, and no friction yet.
         let slides = self.sees(k, measure.matched).then_some(slides);
-        let measure = PointMeasure {
+        PointMeasure {
             gap: measure.gap,
             slip: measure.slip,
+            slipped: self.memory[k].slip,
             slides,
             sticks_first: linearises,
             ..PointMeasure::default()
-        };
-        self.law.traction(k, unknown, &measure).0
+        }
     }
 }

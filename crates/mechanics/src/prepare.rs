@@ -17,6 +17,7 @@ impl System {
         // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
         let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
         self.contacts.iter_mut().for_each(|contact| contact.prepare(&self.bodies, scale));
+        self.contacts.iter_mut().for_each(|contact| contact.law_mut().steepen());
         // What cannot move carries nothing: supports carry there, and what the contact would carry is not determined.
         let start = self.start();
         let (single, _) = self.held(&start.bodies, 0.0).map_err(IncrementError::Assembly)?;

@@ -17,7 +17,10 @@ impl SimplerFriction {
     pub fn instead_of(self, law: &mut Option<Box<dyn Law>>) -> Option<Box<dyn Law>> {
         match self {
             Self::Stated => None,
-            Self::Sticks => law.as_mut().map(|law| std::mem::replace(law, Box::new(Sticks))),
+            Self::Sticks => {
+                let law = law.as_mut().filter(|law| !law.is_compliant())?;
+                Some(std::mem::replace(law, Box::new(Sticks)))
+            }
         }
     }
 }

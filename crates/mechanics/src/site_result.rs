@@ -23,6 +23,8 @@ pub struct SiteResult {
     pub slip: f64,
     /// The part of the available friction that is used: 1 where it slips.
     pub utilisation: f64,
+    /// Depth that was worn off since the start.
+    pub worn: f64,
     /// Of a node of a surface that carries, where its own values are means.
     pub of_surface: Option<OfSurface>,
 }

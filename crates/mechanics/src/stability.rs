@@ -17,7 +17,7 @@ use crate::points::Order;
 use crate::system::{Assembled, System, SystemState};
 pub use crate::unstable::Unstable;
 use nalgebra::{DMatrix, DVector};
-use signorini_contact::law::{Friction, LawPoint};
+use signorini_contact::law::{Friction, LawPoint, Projected};
 use signorini_contact::{Law, Status};
 use signorini_solve::general::{Analysis, Entries, Matrix};
 use signorini_solve::ldlt::Ldlt;
@@ -182,26 +182,32 @@ impl System {
 #[derive(Debug)]
 struct FixedFriction(Arc<Box<dyn Law>>);
 
-impl FixedFriction {
-    fn without_pressure(friction: Friction) -> Friction {
-        Friction { by_pressure: [0.0; 2], ..friction }
-    }
-}
-
 impl Law for FixedFriction {
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
-        Self::without_pressure(self.0.friction(trial, pressure))
-    }
-    fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
-        Self::without_pressure(self.0.friction_at(trial, pressure, point))
+        self.0.friction(trial, pressure)
     }
 
-    fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {
-        self.0.pressure(trial, point)
+    fn traction(&self, trial: [f64; 3], point: &LawPoint) -> Projected {
+        let found = self.0.traction(trial, point);
+        // What holds surfaces together follows from a potential.
+        if self.0.is_compliant() && found.traction[0] <= 0.0 {
+            return found;
+        }
+        let mut derivative = found.derivative;
+        (derivative[1][0], derivative[2][0]) = (0.0, 0.0);
+        Projected { derivative, ..found }
     }
 
     fn range(&self) -> f64 {
         self.0.range()
+    }
+
+    fn is_tangential(&self) -> bool {
+        self.0.is_tangential()
+    }
+
+    fn least_scale(&self) -> f64 {
+        self.0.least_scale()
     }
 
     fn is_compliant(&self) -> bool {

@@ -19,10 +19,71 @@ pub struct Contact {
     pub method: Option<Method>,
     /// Sliding of solids on each other and on rigid bodies; any distance if left out.
     pub sliding: Option<Sliding>,
-    /// Adhesion of the surfaces.
+    /// Adhesion of the surfaces: they attract each other as they close and as they part.
     pub adhesion: Option<Adhesion>,
+    /// Cohesion of solids: what touches at the start is bonded until the bond breaks.
+    pub cohesion: Option<Cohesion>,
+    /// Rough surfaces of solids: the pressure as a function of the gap. If left out, bodies do not penetrate each other.
+    pub compliance: Option<Compliance>,
     /// Friction law; frictionless if left out.
     pub friction: Option<Friction>,
+    /// Wear of solids by Archard's law: the depth that is worn off per pressure and slip, one over a pressure.
+    pub wear: Option<Value>,
+}
+
+/// Surfaces that hold each other with a traction which falls with the opening, until an energy is spent.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cohesion {
+    /// The largest traction against opening, a force per area.
+    pub strength: Value,
+    /// Energy of separation, an energy per area.
+    pub energy: Value,
+    /// The largest traction along the surface; as `strength` if left out. The energy is the same.
+    pub shear_strength: Option<Value>,
+    /// How the traction falls; `linear` if left out.
+    pub softening: Option<SofteningKey>,
+    /// Opening at which the strength is reached, a length; 0 if left out: the bond is rigid until it begins to break.
+    pub opening: Option<Value>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum SofteningKey {
+    /// In proportion to the opening.
+    Linear,
+    /// Exponentially with the opening.
+    Exponential,
+}
+
+/// The pressure of rough surfaces.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Compliance {
+    /// A pressure at any gap, which falls exponentially.
+    Exponential(ExponentialCompliance),
+    /// A power of the penetration.
+    Power(PowerCompliance),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExponentialCompliance {
+    /// The pressure where the gap is zero.
+    pub pressure: Value,
+    /// The gap over which the pressure falls to 1/e, a length.
+    pub length: Value,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PowerCompliance {
+    /// The pressure at the penetration given.
+    pub pressure: Value,
+    /// The penetration at which this pressure acts, a length.
+    pub penetration: Value,
+    /// Exponent of the penetration, 1 or more; 1 if left out.
+    pub exponent: Option<Value>,
 }
 
 /// Friction laws.
@@ -263,4 +324,8 @@ pub enum ActiveSetStart {
 pub struct Adhesion {
     /// Adhesion energy, an energy per area.
     pub energy: Value,
+    /// For solids: the largest attraction, a force per area. Membranes adhere at the front of the zone.
+    pub strength: Option<Value>,
+    /// For solids: how the attraction falls with the gap; `linear` if left out.
+    pub softening: Option<SofteningKey>,
 }

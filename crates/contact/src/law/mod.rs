@@ -12,13 +12,19 @@
 //! opposite. A law that returns to the closest point of a convex set is associated: the slip is normal to the set (maximum
 //! dissipation).
 
+mod cohesion;
+mod compliance;
 mod coulomb;
 mod tresca;
 mod viscous;
+mod wear;
 
+pub use cohesion::{Cohesion, CohesionKeys, Softening};
+pub use compliance::{Compliance, Rough};
 pub use coulomb::Coulomb;
 pub use tresca::Tresca;
 pub use viscous::Viscous;
+pub use wear::Worn;
 
 /// Whether a point carries, and whether it slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,6 +69,10 @@ pub struct LawPoint {
     pub per_gap: f64,
     /// Time that passes in the increment; zero where none does.
     pub duration: f64,
+    /// The largest [`opening`](Law::opening) of the states that were accepted.
+    pub opened: f64,
+    /// Slip of all increments before this one, along the axes.
+    pub slipped: [f64; 2],
 }
 
 impl LawPoint {
@@ -98,6 +108,42 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// Whether [`pressure`](Law::pressure) is another one than that of bodies that may not penetrate.
     fn is_compliant(&self) -> bool {
         false
+    }
+
+    /// Whether it has a traction along the surface.
+    fn is_tangential(&self) -> bool {
+        true
+    }
+
+    /// The least traction per gap of a trial with which the law has one traction for each: above its steepest descent.
+    fn least_scale(&self) -> f64 {
+        0.0
+    }
+
+    /// The largest traction against opening, and that along the surface without pressure.
+    fn strength(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// Whether it holds only what touches at the start.
+    fn is_bond(&self) -> bool {
+        false
+    }
+
+    /// The size of the opening under a trial: the largest of all states is what the law remembers.
+    fn opening(&self, trial: [f64; 3], point: &LawPoint) -> f64 {
+        let _ = (trial, point);
+        0.0
+    }
+
+    /// The pressure by the gap, of rough surfaces.
+    fn compliance(&self) -> Option<Compliance> {
+        None
+    }
+
+    /// Depth that is worn off per pressure and slip.
+    fn wear(&self) -> f64 {
+        0.0
     }
 
     /// Whether friction depends on the velocity of slip.
@@ -183,6 +229,27 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     fn is_compliant(&self) -> bool {
         (**self).is_compliant()
     }
+    fn is_tangential(&self) -> bool {
+        (**self).is_tangential()
+    }
+    fn least_scale(&self) -> f64 {
+        (**self).least_scale()
+    }
+    fn strength(&self) -> [f64; 2] {
+        (**self).strength()
+    }
+    fn is_bond(&self) -> bool {
+        (**self).is_bond()
+    }
+    fn opening(&self, trial: [f64; 3], point: &LawPoint) -> f64 {
+        (**self).opening(trial, point)
+    }
+    fn compliance(&self) -> Option<Compliance> {
+        (**self).compliance()
+    }
+    fn wear(&self) -> f64 {
+        (**self).wear()
+    }
     fn is_rate_dependent(&self) -> bool {
         (**self).is_rate_dependent()
     }
@@ -226,5 +293,7 @@ fn checked(values: &[f64]) -> Result<(), LawError> {
     }
 }
 
+#[cfg(test)]
+mod interface_tests;
 #[cfg(test)]
 mod tests;

@@ -173,7 +173,7 @@ fn a_viscous_law_is_that_of_its_velocity() {
     let law = Viscous::new(mu, v0).unwrap();
     for rate in [1e-3, 0.7, 30.0] {
         for trial in [[1e-3, -2e-3], [0.3, 0.1], [0.5, -0.2], [-4.0, 3.0]] {
-            let at = |z: [f64; 3]| law.traction(z, &LawPoint { per_gap: rate, duration: 1.0 });
+            let at = |z: [f64; 3]| law.traction(z, &LawPoint { per_gap: rate, duration: 1.0, ..LawPoint::default() });
             let [_, t1, t2] = at([p, trial[0], trial[1]]).traction;
             let velocity = [(trial[0] - t1) / rate, (trial[1] - t2) / rate];
             let size = velocity[0].hypot(velocity[1]);
@@ -199,7 +199,7 @@ fn a_viscous_law_is_that_of_its_velocity() {
     // In no time, or far beyond the velocity, it is the law of Coulomb.
     let coulomb = Coulomb::isotropic(mu).unwrap();
     assert_eq!(law.project([p, 0.7, 0.2]), coulomb.project([p, 0.7, 0.2]));
-    let fast = law.traction([p, 4e3, 3e3], &LawPoint { per_gap: 1.0, duration: 1.0 }).traction;
+    let fast = law.traction([p, 4e3, 3e3], &LawPoint { per_gap: 1.0, duration: 1.0, ..LawPoint::default() }).traction;
     assert!(distance(&fast, &coulomb.project([p, 4e3, 3e3]).traction) < 1e-9);
     assert!(Viscous::new(0.3, 0.0).is_err() && Viscous::new(-0.3, 1.0).is_err());
 }

@@ -4,7 +4,7 @@ use super::partner::Partners;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::Body;
 use crate::body::PlaceError;
-use crate::contact_law::ContactLaw;
+use crate::contact_law::{ContactLaw, PointHistory};
 use crate::enforcement::{SOFTER, WAVE};
 use crate::inside::Inside;
 use crate::interaction::{
@@ -114,7 +114,7 @@ impl Interaction for Contact {
     fn history(&self) -> [Vec<f64>; 2] {
         let turned = self.turned.iter().flat_map(|t| t.iter().copied());
         let scales = self.law.stiffness.iter().copied().chain([self.law.times[0]]).chain(turned).collect();
-        [self.law.kept.iter().zip(&self.memory).flat_map(numbers).collect(), scales]
+        [self.law.kept.iter().zip(&self.law.history).zip(&self.memory).flat_map(numbers).collect(), scales]
     }
 
     fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
@@ -122,7 +122,7 @@ impl Interaction for Contact {
         if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
-        (self.law.kept, self.memory) = sites.chunks(NUMBERS).map(memory).unzip();
+        ((self.law.kept, self.law.history), self.memory) = sites.chunks(NUMBERS).map(memory).unzip();
         self.law.stiffness.copy_from_slice(&scales[..count]);
         self.law.times = [scales[count]; 2];
         self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
@@ -212,9 +212,9 @@ impl Drawn for Contact {
 }
 
 /// Numbers of the memory of a site.
-const NUMBERS: usize = 16;
+const NUMBERS: usize = 18;
 
-fn numbers((traction, memory): (&[f64; 3], &SiteMemory)) -> [f64; NUMBERS] {
+fn numbers(((traction, history), memory): ((&[f64; 3], &PointHistory), &SiteMemory)) -> [f64; NUMBERS] {
     let mut out = [0.0; NUMBERS];
     out[..3].copy_from_slice(traction);
     out[3..5].copy_from_slice(&memory.slip);
@@ -223,12 +223,13 @@ fn numbers((traction, memory): (&[f64; 3], &SiteMemory)) -> [f64; NUMBERS] {
         out[6] = f64::from(stuck.point.patch);
         out[7..10].copy_from_slice(&stuck.point.xi);
         out[10..13].copy_from_slice(stuck.on_slave.as_slice());
-        out[13..].copy_from_slice(stuck.on_master.as_slice());
+        out[13..16].copy_from_slice(stuck.on_master.as_slice());
     }
+    (out[16], out[17]) = (history.opened, history.offset);
     out
 }
 
-fn memory(n: &[f64]) -> ([f64; 3], SiteMemory) {
+fn memory(n: &[f64]) -> (([f64; 3], PointHistory), SiteMemory) {
     let vector = |k: usize| Vector::<3>::new(n[k], n[k + 1], n[k + 2]);
     let memory = SiteMemory {
         slip: [n[3], n[4]],
@@ -238,5 +239,5 @@ fn memory(n: &[f64]) -> ([f64; 3], SiteMemory) {
             on_master: vector(13),
         }),
     };
-    ([n[0], n[1], n[2]], memory)
+    (([n[0], n[1], n[2]], PointHistory { opened: n[16], offset: n[17] }), memory)
 }

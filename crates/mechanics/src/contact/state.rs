@@ -25,12 +25,14 @@ impl Contact {
             let pair = &touch.pair;
             let [p, t1, t2] = found.projected.traction;
             out.normal = pair.normal;
-            out.gap = Some(pair.gap);
+            (out.gap, out.worn) = self.law.gap_and_wear(pair.gap, &found.next);
             out.pressure = p;
             out.status = found.projected.status;
             // The traction of the law is that along the slip; on the slave acts its opposite.
             out.friction = -(found.axes[0] * t1 + found.axes[1] * t2);
-            if let (Some(law), true) = (&self.law.friction, out.status != Status::Open) {
+            if let Some(law) =
+                self.law.friction.as_ref().filter(|law| law.is_tangential() && out.status != Status::Open)
+            {
                 out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
                 out.utilisation = law.utilisation([t1, t2], p);
                 let before = self.memory[k].slip;
@@ -55,10 +57,11 @@ impl Contact {
     pub(crate) fn accept_sites(&mut self, sides: &Sides<'_>, lambda: &[f64]) -> Result<(), PlaceError> {
         let master = self.met(sides)?;
         let now = self.turns(sides, master.as_ref());
-        let (mut memory, mut tractions) = (Vec::new(), Vec::new());
+        let (mut memory, mut tractions, mut history) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..self.sites.len() {
             let Some(Ok(touch)) = self.pair(k, sides, (master.as_ref(), f64::INFINITY), |_| false).1 else {
                 memory.push(SiteMemory::default());
+                history.push(self.law.remembered(k, None));
                 tractions.push([0.0; 3]);
                 continue;
             };
@@ -66,7 +69,7 @@ impl Contact {
             let pair = &touch.pair;
             let mut own = SiteMemory { stuck: pair.stuck, slip: [0.0; 2] };
             let mut traction = found.projected.traction;
-            if self.law.friction.is_some() && found.projected.status != Status::Open {
+            if self.law.is_tangential() && found.projected.status != Status::Open {
                 let before = self.memory[k].slip;
                 own.slip = std::array::from_fn(|i| before[i] + found.slip[i]);
                 // Friction is kept along the axes of the new anchor.
@@ -82,9 +85,11 @@ impl Contact {
                 (self.memory[k].stuck, self.turned) = (anchored, turned);
             }
             memory.push(own);
+            history.push(found.next);
             tractions.push(traction);
         }
         (self.memory, self.turned) = (memory, now);
+        self.law.history = history;
         self.law.accept(tractions);
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::axes::{STEEP, axes};
 use super::{Contact, MeasuredPair};
-use crate::contact_law::PointMeasure;
+use crate::contact_law::{PointHistory, PointMeasure};
 use signorini_contact::law::Projected;
 use signorini_geometry::Vector;
 
@@ -14,6 +14,8 @@ pub(super) struct Traction {
     pub slip: [f64; 2],
     /// Of friction.
     pub trial: [f64; 2],
+    /// What the site remembers of it.
+    pub next: PointHistory,
 }
 
 impl Contact {
@@ -27,7 +29,7 @@ impl Contact {
         (redistributed, sticks_first): ([f64; 2], bool),
     ) -> Traction {
         let pair = &touch.pair;
-        let has_friction = self.law.friction.is_some();
+        let has_friction = self.law.is_tangential();
         let (axes, d_axes) = if has_friction { axes(pair) } else { ([Vector::<3>::zeros(); 2], Vec::new()) };
         let slip = if has_friction { axes.map(|e| e.dot(&pair.elastic)) } else { [0.0; 2] };
         // In the plane nothing moves across it, and there is no friction that way.
@@ -36,12 +38,14 @@ impl Contact {
         let measure = PointMeasure {
             gap: pair.gap,
             slip,
+            slipped: self.memory[k].slip,
             slides: Some(slides),
             base: touch.stress.as_ref().map(|s| s.base(&pair.normal, &axes)),
             besides: redistributed,
             sticks_first,
         };
         let (projected, trial) = self.law.traction(k, unknown, &measure);
-        Traction { projected, axes, d_axes, slip, trial }
+        let next = self.law.remembered(k, Some((&measure, trial, &projected)));
+        Traction { projected, axes, d_axes, slip, trial: [trial[1], trial[2]], next }
     }
 }

@@ -196,7 +196,7 @@ impl Surfaces<'_> {
             let Some(seen) = &point.master else { continue };
             sights.extend(variables.sight(self, (&point.s, seen)).map(|sight| (point, sight)));
         }
-        let mut sums = Sums::new(&variables, contact.law.friction.is_some(), wanted == Wanted::Tangent);
+        let mut sums = Sums::new(&variables, contact.law.is_tangential(), wanted == Wanted::Tangent);
         let (mut pushes, mut gaps) = (Rows::new(), Rows::new());
         for (point, sight) in &sights {
             sums.add(sight, &carried.traction_at(&point.shares, &sight.normal));

@@ -10,7 +10,7 @@ use super::shown::{shared_of, show, zone_of};
 use super::terms::{Assembly, NodeTractions};
 use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
-use crate::contact_law::ContactLaw;
+use crate::contact_law::{ContactLaw, PointHistory};
 use crate::enforcement::WAVE;
 use crate::inside::Inside;
 use crate::interaction::{
@@ -37,6 +37,8 @@ struct Found<'a> {
     linear: Option<Arc<AtRest>>,
     measures: Vec<NodeMeasure>,
     projected: Vec<Projected>,
+    /// What the nodes remember of the state.
+    next: Vec<PointHistory>,
 }
 
 /// Faces whose terms are held at a time, made side by side.
@@ -61,8 +63,8 @@ impl Mortar {
             }
         };
         let of = |(k, measure)| self.traction(k, measure, self.law.multiplier(k, multipliers), linearises);
-        let projected = measures.iter().enumerate().map(of).collect();
-        Ok(Found { sides, measured, linear, measures, projected })
+        let (projected, next) = measures.iter().enumerate().map(of).unzip();
+        Ok(Found { sides, measured, linear, measures, projected, next })
     }
 
     /// The nodes that see the master, with their measures.
@@ -85,7 +87,7 @@ impl Mortar {
         for (point, met) in found.measured.points() {
             for (node, share) in &point.shares {
                 let [_, t1, t2] = found.projected[*node as usize].traction;
-                if let Some(axes) = self.axes(*node, &met.normal).filter(|_| self.law.friction.is_some()) {
+                if let Some(axes) = self.axes(*node, &met.normal).filter(|_| self.law.is_tangential()) {
                     rubbed[*node as usize] -= (axes.e[0] * t1 + axes.e[1] * t2) * *share;
                 }
             }
@@ -101,11 +103,13 @@ impl Mortar {
             let [p, t1, t2] = projected.traction;
             out.weight = measure.weight;
             out.normal = measure.normal;
-            out.gap = Some(measure.gap);
+            (out.gap, out.worn) = self.law.gap_and_wear(measure.gap, &found.next[k]);
             out.pressure = p;
             out.status = projected.status;
             out.friction = rubbed[k] / measure.weight;
-            if let (Some(law), true) = (&self.law.friction, out.status != Status::Open) {
+            if let Some(law) =
+                self.law.friction.as_ref().filter(|law| law.is_tangential() && out.status != Status::Open)
+            {
                 let axes = self.axes(k as u32, &measure.normal.normalize());
                 out.increment =
                     axes.map_or(Vector::<3>::zeros(), |a| a.e[0] * measure.slip[0] + a.e[1] * measure.slip[1]);
@@ -224,7 +228,7 @@ impl Interaction for Mortar {
             };
             let mut next = NodeMemory { along: self.along(&found, &normal), ..NodeMemory::default() };
             let mut traction = projected.traction;
-            if self.law.friction.is_some() && projected.status != Status::Open {
+            if self.law.is_tangential() && projected.status != Status::Open {
                 let before = self.memory[k].slip;
                 next.slip = std::array::from_fn(|i| before[i] + measure.slip[i]);
                 // Friction goes on along the new axes.
@@ -242,8 +246,9 @@ impl Interaction for Mortar {
             tractions.push(traction);
         }
         self.memory = memory;
+        self.law.history = found.next;
         self.matched.clear();
-        if self.law.friction.is_some() {
+        if self.law.is_tangential() {
             let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
                 face: point.face,
                 s: point.s,

@@ -51,7 +51,7 @@ impl<'a> Sides<'a> {
             None => Opposite::Rigid(master.master(group, other)?),
         };
         let first = [at.first[contact.slave.body], at.first[contact.master.body]];
-        let friction = contact.law.friction.is_some();
+        let friction = contact.law.is_tangential();
         Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction })
     }
 

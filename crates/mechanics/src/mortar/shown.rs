@@ -109,7 +109,11 @@ fn show_on<const D: usize>(
     results: &mut [SiteResult],
 ) {
     let Carrying { points, multiplier, active, states, counts_at } = Carrying::new(measured, results);
-    let pressure = recovered(faces, nodes, &points, &multiplier, &active, &measured.cover.given);
+    // What pulls is no pressure that could be recovered as one.
+    let pressure = match law.is_some_and(|law| law.strength()[0] > 0.0) {
+        true => multiplier,
+        false => recovered(faces, nodes, &points, &multiplier, &active, &measured.cover.given),
+    };
     let mut area = vec![0.0; results.len()];
     for (face, whole) in zone(faces, nodes, &points, &states).face_area.into_iter().enumerate() {
         let carrying: Vec<usize> =

@@ -72,7 +72,9 @@ pub fn tangential(
         Linearised::About(about) => about,
         _ => now,
     };
-    let projected = friction.law.traction(about, &LawPoint { per_gap: friction.penalty, duration: friction.duration });
+    let projected = friction
+        .law
+        .traction(about, &LawPoint { per_gap: friction.penalty, duration: friction.duration, ..LawPoint::default() });
     let d = &projected.derivative;
     let predicted = [projected.traction[1], projected.traction[2]];
     let components: [f64; 2] =

@@ -244,6 +244,9 @@ fn of_contact(name: &str, sites: &[SiteResult], rubs: bool, is_curve: bool) -> F
             .scalar("contact_status", sites.iter().map(status).collect())
             .scalar("weight", sites.iter().map(|s| s.weight).collect())
             .vector("normal", sites.iter().flat_map(|s| vector(&s.normal)).collect());
+    if sites.iter().any(|s| s.worn > 0.0) {
+        fields = fields.scalar("wear", sites.iter().map(|s| s.worn).collect());
+    }
     if rubs {
         let word = |s: &SiteResult| match s.status {
             Status::Open => 0.0,

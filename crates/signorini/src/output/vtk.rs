@@ -20,6 +20,7 @@ pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Resu
         ("contact_pressure", &units.pressure),
         ("friction_traction", &units.pressure),
         ("slip", &units.length),
+        ("wear", &units.length),
         ("stress_xx_yy_zz_xy_yz_xz", &units.pressure),
         ("von_mises", &units.pressure),
         ("floor", &units.length),

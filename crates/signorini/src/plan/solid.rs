@@ -1,6 +1,7 @@
 //! From the statement to the cells of solids, their materials and laws of friction.
 
 mod friction;
+mod interface;
 mod material;
 mod mesh;
 

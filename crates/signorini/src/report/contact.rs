@@ -68,6 +68,16 @@ pub struct ContactReport {
     pub friction_force: Option<[f64; 3]>,
     /// Energy dissipated by friction in the increment, summed over all parts of an increment with cut-backs.
     pub dissipation: Option<f64>,
+    /// Largest traction against opening. Null without adhesion or cohesion. The contact area then includes what is apart and
+    /// still attracted.
+    #[serde(default)]
+    pub max_tension: Option<f64>,
+    /// Largest depth worn off at the end of the increment before this one. Null without wear, as is the next one.
+    #[serde(default)]
+    pub max_wear: Option<f64>,
+    /// Volume worn off, an area in the plane.
+    #[serde(default)]
+    pub worn_volume: Option<f64>,
     /// Friction limits of a rope in its current position. Null for other bodies.
     #[serde(default)]
     pub rope: Option<RopeLimits>,

@@ -24,9 +24,6 @@ impl Planner<'_> {
         let mut out = Vec::new();
         let mut told = Vec::new();
         for (name, key) in &problem.contacts {
-            if let Some(adhesion) = &key.adhesion {
-                return Err(self.unavailable(adhesion, "adhesion in a system of bodies"));
-            }
             let pairs: Vec<(String, [&String; 2])> = match (&key.between, &key.self_contact, &key.all) {
                 (Some(pair), None, None) if pair.len() == 2 && pair[0].trim() == pair[1].trim() => {
                     let message = format!("`between` names `{}` twice", pair[0].trim());
@@ -147,14 +144,14 @@ impl Planner<'_> {
                 let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == error.body()));
                 self.misplaced(side.unwrap_or(&on[0]), &error)
             })?;
-        if let Some(friction) = &key.friction {
-            let law = self.law(friction)?;
-            contact.axis = match friction {
-                problem::Friction::Coulomb(coulomb) => self.axis_choice(coulomb)?,
-                _ => AxisChoice::Material,
-            };
-            contact.law.friction = Some(law);
+        let is_line = matches!(kind, Kind::Curve { .. }) || self::is_curve(system, &slave);
+        if is_line || matches!(kinds[master.body], Kind::Curve { .. }) {
+            self.refuse_of_curves(key)?;
         }
+        if let Some(problem::Friction::Coulomb(coulomb)) = &key.friction {
+            contact.axis = self.axis_choice(coulomb)?;
+        }
+        contact.law.friction = self.interface(key)?;
         // What of a body of small strains faces another part of it turns little within an increment.
         let keeps = contact.law.friction.is_none() || matches!(kind, Kind::Cells);
         if slave.body == master.body && body(&slave).is_linear() && keeps {
@@ -186,6 +183,7 @@ impl Planner<'_> {
         if !curves || !matches!(&key.method, None | Some(Method::Curve(_))) {
             return Ok(None);
         }
+        self.refuse_of_curves(key)?;
         let stated = key.method.as_ref().and_then(|m| if let Method::Curve(k) = m { Some(k) } else { None });
         let kept = self.kept(stated.and_then(|k| k.enforcement.as_ref()), Kept::AugmentedLagrangian, "curve")?;
         let side = |part: &Part| (part.clone(), system.bodies[part.body].as_ref());
@@ -232,6 +230,15 @@ impl Planner<'_> {
         Ok(Some((Box::new(contact), ContactInfo { carries: TractionKind::Force, ..ContactInfo::by("curve", axis) })))
     }
 
+    /// Refuses laws that ropes, beams and edges do not have.
+    fn refuse_of_curves(&self, key: &problem::Contact) -> Result<(), CaseError> {
+        self.refuse_interface(key, "in contact of curves")?;
+        match &key.adhesion {
+            Some(adhesion) => Err(self.unavailable(adhesion, "adhesion of ropes, beams and edges")),
+            None => Ok(()),
+        }
+    }
+
     /// Contact by discs on both surfaces.
     fn by_discs(
         &self,
@@ -246,6 +253,10 @@ impl Planner<'_> {
             return Err(problem
                 .error(friction, "contact by discs is frictionless")
                 .help("method.cell_surface = {} for contact with friction"));
+        }
+        self.refuse_interface(key, "in contact by discs")?;
+        if let Some(adhesion) = &key.adhesion {
+            return Err(problem.error(adhesion, "contact by discs has no adhesion").help("method.cell_surface = {}"));
         }
         let length = |value: &Option<Value>| value.as_ref().map(|v| self.reader.positive(v, LENGTH)).transpose();
         let cover = DiscCovering {

@@ -49,13 +49,11 @@ impl Planner<'_> {
         let kept = self.kept(stated, Kept::Multiplier, "mortar")?;
         let mut contact = Mortar::new(name, (slave.clone(), body(slave)), (master.clone(), body(master)), kept)
             .map_err(|error| problem.error(key, error.to_string()))?;
-        if let Some(friction) = &key.friction {
-            contact.law.friction = Some(self.law(friction)?);
-            if let Friction::Coulomb(coulomb) = friction {
-                contact.set_axis(self.axis_choice(coulomb)?);
-                self.check_axis(coulomb, contact.axis(), &kinds[master.body])?;
-                self.check_along(coulomb, contact.axis(), (slave, system))?;
-            }
+        contact.law.friction = self.interface(key)?;
+        if let Some(Friction::Coulomb(coulomb)) = &key.friction {
+            contact.set_axis(self.axis_choice(coulomb)?);
+            self.check_axis(coulomb, contact.axis(), &kinds[master.body])?;
+            self.check_along(coulomb, contact.axis(), (slave, system))?;
         }
         let slides_little = key.sliding == Some(Sliding::Small);
         if slides_little {

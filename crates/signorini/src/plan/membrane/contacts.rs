@@ -39,6 +39,12 @@ impl Planner<'_> {
                     .unavailable(friction, "friction of a membrane")
                     .help("leave `friction` out: contact of membranes is frictionless; `adhesion` is available"));
             }
+            self.refuse_interface(contact, "in contact of a membrane")?;
+            if let Some(strength) = contact.adhesion.as_ref().and_then(|a| a.strength.as_ref()) {
+                return Err(problem
+                    .error(strength, "the adhesion of a membrane acts at the front of the zone, without a strength")
+                    .help("leave `strength` out"));
+            }
             if let Some(own) = &contact.method
                 && self.method(contact, size)? != method
             {

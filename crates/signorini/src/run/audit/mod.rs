@@ -50,12 +50,13 @@ fn surface(shape: &dyn RigidShape, bounds: &Aabb<3>, in_space: bool) -> Vec<Poin
 }
 
 /// Numbers of a touch in a checkpoint.
-const NUMBERS: usize = 20;
+const NUMBERS: usize = 21;
 
 fn to_numbers(t: &Touch) -> Vec<f64> {
     let vectors = [&t.x, &t.foot, &t.normal, &t.friction, &t.slip];
     let mut out: Vec<f64> = vectors.iter().flat_map(|v| [v[0], v[1], v[2]]).collect();
-    out.extend([t.weight, t.area, t.pressure, f64::from(u8::from(t.is_closed)), f64::from(u8::from(t.slips))]);
+    let flags = [t.is_closed, t.slips].map(|flag| f64::from(u8::from(flag)));
+    out.extend([t.weight, t.area, t.pressure, flags[0], flags[1], t.worn]);
     out
 }
 
@@ -75,6 +76,7 @@ fn of_numbers(n: &[f64]) -> Option<Touch> {
         pressure: n[17],
         is_closed: n[18] != 0.0,
         slips: n[19] != 0.0,
+        worn: n[20],
     })
 }
 

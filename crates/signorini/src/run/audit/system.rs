@@ -9,9 +9,9 @@ use crate::report::{StepReport, TractionKind};
 use serde_json::Value;
 use signorini_audit::{
     Acting, Body, Boundary, Carries, Contact, Curve, Finding, ForceBounds, Form, Placement, Rigid, Setting, Solid,
-    Space, Stability, State, Touch, audited, gaps,
+    Space, Stability, State, Surfaces, Touch, audited, gaps,
 };
-use signorini_contact::Status;
+use signorini_contact::{Law, Status};
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::system::{Support, TimedLoad};
@@ -174,6 +174,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             carries,
             wanted_penetration: wanted.unwrap_or(0.0),
             at_places: !["mortar", "discs"].contains(&tested.method),
+            surfaces: surfaces(contact.law().friction.as_deref()),
         }
     };
     (0..plan.system.contacts.len()).map(contact).collect()
@@ -206,7 +207,15 @@ fn touch(s: &SiteResult) -> Touch {
         pressure: if s.status == Status::Open { 0.0 } else { s.pressure },
         friction: if s.status == Status::Open { Vector::<3>::zeros() } else { s.friction },
         slip: s.increment,
+        worn: s.worn,
     }
+}
+
+/// What surfaces do besides keeping each other out and rubbing.
+fn surfaces(law: Option<&dyn Law>) -> Surfaces {
+    let Some(law) = law else { return Surfaces::default() };
+    let gap_at = law.compliance().map(|c| Arc::new(move |p| c.gap(p)) as Arc<dyn Fn(f64) -> f64 + Send + Sync>);
+    Surfaces { strength: law.strength(), range: law.range(), gap_at, wear: law.wear() }
 }
 
 /// How stable the state is, where that is known; unstable states that are asked for are warned of elsewhere.

@@ -260,6 +260,8 @@ fn contact_report(
     let zones = if is_curve { runs(sites) } else { zones(sites) };
     let components: Vec<Component> = zones.iter().map(component).collect();
     let rubs = contact.friction().is_some();
+    let law = contact.law().friction.as_deref();
+    let (holds, wears) = (law.is_some_and(|law| law.strength()[0] > 0.0), law.is_some_and(|law| law.wear() > 0.0));
     let area_of_contact: f64 = sites.iter().map(SiteResult::contact_area).sum();
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
@@ -283,6 +285,9 @@ fn contact_report(
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
         friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.friction * s.weight)))),
+        max_tension: holds.then(|| closed().map(|s| -s.pressure).fold(0.0, f64::max)),
+        max_wear: wears.then(|| sites.iter().map(|s| s.worn).fold(0.0, f64::max)),
+        worn_volume: wears.then(|| sites.iter().map(|s| s.worn * s.weight).sum()),
         rope: tested.along_a_curve.then(|| rope_limits((contact, tested), sites)).flatten(),
         ..ContactReport::default()
     }

@@ -58,6 +58,8 @@ pub(crate) struct PointHistory {
     pub opened: f64,
     /// What is worn off; less the gap at the start of what is bonded there.
     pub offset: f64,
+    /// The trial of the last state, of a law that softens.
+    pub trial: [f64; 3],
 }
 
 /// What the law is given at a point.
@@ -144,7 +146,8 @@ impl ContactLaw {
     /// What a point remembers of a state with these trials; without them nothing met it there.
     pub(crate) fn remembered(&self, k: usize, at: Option<(&PointMeasure, [f64; 3], &Projected)>) -> PointHistory {
         let before = self.history[k];
-        let Some(law) = self.friction.as_ref().filter(|law| law.is_bond() || law.wear() > 0.0) else { return before };
+        let remembers = |law: &&Box<dyn Law>| law.least_scale() > 0.0 || law.wear() > 0.0;
+        let Some(law) = self.friction.as_ref().filter(remembers) else { return before };
         if self.is_new && law.is_bond() {
             let width = self.areas[k].powf(if self.in_plane.is_some() { 1.0 } else { 0.5 });
             return match at {
@@ -157,7 +160,7 @@ impl ContactLaw {
         let Some((measure, trial, projected)) = at else { return before };
         let opening = law.opening(trial, &self.point(k, measure));
         let worn = law.wear() * projected.traction[0] * measure.slip[0].hypot(measure.slip[1]);
-        PointHistory { opened: before.opened.max(opening), offset: before.offset + worn }
+        PointHistory { opened: before.opened.max(opening), offset: before.offset + worn, trial }
     }
 
     /// What the law is told of a point besides its trial.
@@ -224,14 +227,22 @@ impl ContactLaw {
         let trial = |i: usize| if slides[i] { lambda[i + 1] + c * measure.slip[i] } else { 0.0 };
         let point = self.point(k, measure);
         let project = |trial: [f64; 3]| law.traction(trial, &point);
-        let mut besides = measure.besides;
-        let about = |i: usize| if slides[i] { trial(i) + measure.besides[i] } else { 0.0 };
-        let mut projected = project([pressing, about(0), about(1)]);
+        let mut besides = [0.0, measure.besides[0], measure.besides[1]];
+        // What moved as prescribed has not moved the rest yet: where surfaces hold each other the first step goes on from what
+        // they carried, as if all of them were torn apart otherwise.
+        let kept = self.kept[k];
+        let begins = measure.sticks_first && law.least_scale() > 0.0 && kept[0] != 0.0 && kept == unknown;
+        if begins {
+            let last = self.history[k].trial;
+            besides = [last[0] - pressing, last[1] - trial(0), last[2] - trial(1)];
+        }
+        let about = |i: usize| if slides[i] { trial(i) + besides[1 + i] } else { 0.0 };
+        let mut projected = project([pressing + besides[0], about(0), about(1)]);
         // What slips one way does not slip back in the next step: it sticks first. Else steps send it to and fro.
         // The friction of what pulls in an iterate tells no direction.
         let back = unknown[0] > 0.0 && (1..3).map(|i| unknown[i] * projected.traction[i]).sum::<f64>() < 0.0;
         if measure.sticks_first && projected.status == Status::Slip && back && law.least_scale() == 0.0 {
-            besides = [-trial(0), -trial(1)];
+            besides = [0.0, -trial(0), -trial(1)];
             projected = project([pressing, 0.0, 0.0]);
         }
         for i in (0..2).filter(|i| !slides[*i]) {
@@ -242,10 +253,10 @@ impl ContactLaw {
             let beyond = project([pressing, (1.0 + 2.0 * AT_LIMIT) * t1, (1.0 + 2.0 * AT_LIMIT) * t2]);
             (projected.derivative, projected.status) = (beyond.derivative, beyond.status);
         }
-        if besides != [0.0; 2] {
+        if besides != [0.0; 3] {
             let d = projected.derivative;
-            let more = |a: usize| d[1 + a][1] * besides[0] + d[1 + a][2] * besides[1];
-            (0..2).for_each(|a| projected.traction[1 + a] -= more(a));
+            let more = |a: usize| (0..3).map(|b| d[a][b] * besides[b]).sum::<f64>();
+            (0..3).for_each(|a| projected.traction[a] -= more(a));
         }
         (projected, [pressing, trial(0), trial(1)])
     }

@@ -119,10 +119,11 @@ fn setting(plan: &MechanicsPlan) -> Setting {
             Kind::Solid | Kind::Cells => Form::Solid(solid(plan, body.name(), body.fields(state), space)),
         };
         // The force that moves a place by a unit of length, times what rounding moves it by.
-        let groups = [None, Some("boundary")].into_iter();
-        let site = groups.filter_map(|on| body.sites(on, Sampling::Nodes).ok()?.first().copied()).next();
-        let stiffness = site.map_or(0.0, |site| body.site_stiffness(&site));
-        let rounding = if stiffness.is_finite() { ROUNDING * stiffness * body.size() } else { 0.0 };
+        // A place on an axis has none.
+        let sites =
+            [None, Some("boundary")].into_iter().filter_map(|on| body.sites(on, Sampling::Nodes).ok()).flatten();
+        let stiffness = sites.map(|site| body.site_stiffness(&site)).filter(|c| c.is_finite()).fold(0.0, f64::max);
+        let rounding = ROUNDING * stiffness * body.size();
         Body { name: body.name().to_string(), form, rounding }
     });
     Setting { space, bodies: bodies.collect(), contacts: contacts(plan) }

@@ -13,12 +13,13 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '38c86f60382d5ff0'
+SCHEMA = 'b1c4d9e74ca2b5a0'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
     'Body': {'membrane': 'Membrane', 'rigid': 'Rigid', 'solid': 'Solid', 'cells': 'Cells', 'rope': 'Rope', 'beam': 'Beam'},
     'CellIntegration': {'exact': 'ExactIntegration', 'sub_cells': 'SubCellIntegration'},
+    'Compliance': {'exponential': 'ExponentialCompliance', 'power': 'PowerCompliance'},
     'Composed': {'implicit': 'ImplicitGeometry', 'box': 'BoxGeometry', 'image': 'ImageGeometry', 'union': '[<Composed>|<Shape>]', 'intersection': '[<Composed>|<Shape>]', 'difference': '[<Composed>|<Shape>]', 'offset': 'OffsetGeometry'},
     'Control': {'time': 'Time', 'arc_length': 'ArcLength', 'area': 'AreaControl'},
     'Domain': {'disc': 'Disc', 'ellipse': 'Ellipse', 'rectangle': 'Rectangle', 'polygon': 'Polygon', 'implicit': 'Implicit', 'interval': 'Interval'},
@@ -56,17 +57,23 @@ class Adhesion(Noun):
     """A table of keys.
 
     energy: Adhesion energy, an energy per area.
+    softening: For solids: how the attraction falls with the gap; `linear` if left out.
+    strength: For solids: the largest attraction, a force per area. Membranes adhere at the front of the zone.
     """
 
     _key = None
-    _types = {'energy': ('energy', 'Value')}
+    _types = {'energy': ('energy', 'Value'), 'softening': ('softening', 'str'), 'strength': ('strength', 'Value')}
 
     def __init__(
         self,
         *,
         energy: Value,
+        softening: Optional[str] = None,
+        strength: Optional[Value] = None,
     ) -> None:
         self.energy = energy
+        self.softening = softening
+        self.strength = strength
 
 
 class ArcLength(Noun):
@@ -414,6 +421,36 @@ class CircleSection(Noun):
         self.radius = radius
 
 
+class Cohesion(Noun):
+    """Surfaces that hold each other with a traction which falls with the opening, until an energy is spent.
+
+    strength: The largest traction against opening, a force per area.
+    energy: Energy of separation, an energy per area.
+    opening: Opening at which the strength is reached, a length; 0 if left out: the bond is rigid until it begins
+        to break.
+    shear_strength: The largest traction along the surface; as `strength` if left out. The energy is the same.
+    softening: How the traction falls; `linear` if left out.
+    """
+
+    _key = None
+    _types = {'strength': ('strength', 'Value'), 'energy': ('energy', 'Value'), 'opening': ('opening', 'Value'), 'shear_strength': ('shear_strength', 'Value'), 'softening': ('softening', 'str')}
+
+    def __init__(
+        self,
+        *,
+        strength: Value,
+        energy: Value,
+        opening: Optional[Value] = None,
+        shear_strength: Optional[Value] = None,
+        softening: Optional[str] = None,
+    ) -> None:
+        self.strength = strength
+        self.energy = energy
+        self.opening = opening
+        self.shear_strength = shear_strength
+        self.softening = softening
+
+
 class Cone(Noun):
     """An infinite circular cone.
 
@@ -440,17 +477,21 @@ class Cone(Noun):
 class Contact(Noun):
     """A contact between bodies.
 
-    adhesion: Adhesion of the surfaces.
+    adhesion: Adhesion of the surfaces: they attract each other as they close and as they part.
     all: Whether contact is possible between all bodies.
     between: The two bodies, slave first. Contact is tested at points of the slave.
+    cohesion: Cohesion of solids: what touches at the start is bonded until the bond breaks.
+    compliance: Rough surfaces of solids: the pressure as a function of the gap. If left out, bodies do not
+        penetrate each other.
     friction: Friction law; frictionless if left out.
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     self_contact: The rope, beam or solid that is in contact with itself.
     sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
+    wear: Wear of solids by Archard's law: the depth that is worn off per pressure and slip, one over a pressure.
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'wear': ('wear', 'Value')}
 
     def __init__(
         self,
@@ -458,18 +499,24 @@ class Contact(Noun):
         adhesion: Optional[Adhesion | Mapping[str, Any]] = None,
         all: Optional[bool] = None,
         between: Optional[Sequence[str] | Array] = None,
+        cohesion: Optional[Cohesion | Mapping[str, Any]] = None,
+        compliance: Optional[ExponentialCompliance | PowerCompliance | Mapping[str, Any] | str] = None,
         friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | Mapping[str, Any] | str] = None,
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
         self_contact: Optional[str] = None,
         sliding: Optional[str] = None,
+        wear: Optional[Value] = None,
     ) -> None:
         self.adhesion = adhesion
         self.all = all
         self.between = between
+        self.cohesion = cohesion
+        self.compliance = compliance
         self.friction = friction
         self.method = method
         self.self_contact = self_contact
         self.sliding = sliding
+        self.wear = wear
 
 
 class CoulombFriction(Noun):
@@ -690,6 +737,26 @@ class ExactIntegration(Noun):
         points: Optional[int] = None,
     ) -> None:
         self.points = points
+
+
+class ExponentialCompliance(Noun):
+    """A pressure at any gap, which falls exponentially.
+
+    pressure: The pressure where the gap is zero.
+    length: The gap over which the pressure falls to 1/e, a length.
+    """
+
+    _key = 'exponential'
+    _types = {'pressure': ('pressure', 'Value'), 'length': ('length', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        pressure: Value,
+        length: Value,
+    ) -> None:
+        self.pressure = pressure
+        self.length = length
 
 
 class Fit(Noun):
@@ -1618,6 +1685,29 @@ class Polygon(Noun):
         self.points = points
 
 
+class PowerCompliance(Noun):
+    """A power of the penetration.
+
+    pressure: The pressure at the penetration given.
+    penetration: The penetration at which this pressure acts, a length.
+    exponent: Exponent of the penetration, 1 or more; 1 if left out.
+    """
+
+    _key = 'power'
+    _types = {'pressure': ('pressure', 'Value'), 'penetration': ('penetration', 'Value'), 'exponent': ('exponent', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        pressure: Value,
+        penetration: Value,
+        exponent: Optional[Value] = None,
+    ) -> None:
+        self.pressure = pressure
+        self.penetration = penetration
+        self.exponent = exponent
+
+
 class Prescribed(Noun):
     """Prescribed translation and rotation.
 
@@ -2460,4 +2550,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]

@@ -15,8 +15,9 @@ use signorini_solve::schwarz::Inverses;
 
 /// Force relative to the largest of all that is left in the end.
 const TOLERANCE: f64 = 1e-10;
-/// Rounding of a gap relative to the size of all bodies: of the operations on positions that lead to it.
-const GAP: f64 = 16.0 * f64::EPSILON;
+/// Rounding of a gap relative to the size of all bodies: of positions, and of the projections and cuts of faces that lead to it,
+/// where it is the larger at ends of faces.
+const GAP: f64 = 1e-13;
 /// Rounding of positions that were solved for, relative to the size of the bodies.
 pub(crate) const ROUNDING: f64 = 1e-12;
 /// Stiffness of what has none, relative to the largest, by which residuals are compared.

@@ -38,13 +38,15 @@ pub fn draw(contact: &ContactShown, surface: &ShownSurface, time: f64, space: Sp
     let pressure = labels.pressure("p");
     // At a sharp edge the pressure has no bound, and would leave nothing to see of the rest.
     let bound = SINGULAR * usual(&profile.zones);
-    let (top, note) = match most > bound && bound > 0.0 {
+    // What holds surfaces together is a pressure below zero, and bounded.
+    let least = profile.pressure.iter().fold(0.0f64, |m, p| m.min(*p));
+    let (top, note) = match most > bound && bound > 0.0 && least == 0.0 {
         true => (bound, beyond_the_chart(most, &pressure)),
         false => (most, String::new()),
     };
     let title = titled(&format!("Contact pressure of `{}`", contact.fields.name), time);
     let mut page = Page::new(SIZE, &title, &note);
-    let (x, y) = (Axis::new(&along.name, profile.range()), Axis::from_zero(&pressure, (0.0, top)));
+    let (x, y) = (Axis::new(&along.name, profile.range()), Axis::from_zero(&pressure, (least, top)));
     let mut panel = Panel::new(&mut page.svg, [0.0, 46.0, SIZE.0, SIZE.1 - 4.0], x, y);
     // Nothing is drawn where nothing touches: no contact is not a contact without pressure.
     let mut key = vec![if profile.zones.is_empty() {

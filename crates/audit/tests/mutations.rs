@@ -124,6 +124,7 @@ fn block() -> Case {
             pressure: 0.5,
             friction: v(-0.5 * MU, 0.0, 0.0),
             slip: v(slip, 0.0, 0.0),
+            worn: 0.0,
         };
         (0..=cells).map(touch).collect()
     };

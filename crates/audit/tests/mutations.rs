@@ -530,3 +530,39 @@ fn a_body_that_shows_nothing_is_no_panic() {
     assert!(gaps::check_start(&case.setting, &case.now).is_empty());
     case.verdict();
 }
+
+/// Rough surfaces are as far apart as their pressure says, and nothing pulls by more than its strength.
+#[test]
+fn surfaces_act_by_their_law() {
+    let refused = |spoil: &dyn Fn(&mut Touch)| {
+        let mut case = disc();
+        let gap_at: Arc<dyn Fn(f64) -> f64 + Send + Sync> = Arc::new(|p| -0.1 * p);
+        case.setting.contacts[0].surfaces =
+            Surfaces { strength: [0.5, 0.0], range: 1.0, gap_at: Some(gap_at), wear: 0.0 };
+        let touch = &mut case.now.contacts[0][0];
+        touch.x = touch.foot - touch.normal * 0.1;
+        spoil(touch);
+        let found = signorini_audit::tractions::check(&case.setting, None, &case.now);
+        found.into_iter().filter(|f| f.outcome == signorini_audit::Outcome::Refused).count()
+    };
+    assert_eq!(refused(&|_| ()), 0);
+    assert_eq!(refused(&|t| t.x -= t.normal * 0.1), 1);
+    assert_eq!(refused(&|t| t.pressure = -0.4), 0);
+    assert_eq!(refused(&|t| t.pressure = -0.6), 1);
+}
+
+/// What surfaces take is part of the balance of energy: a load that sinks with what is worn off loses nothing.
+#[test]
+fn worn_surfaces_take_the_work_of_what_sinks() {
+    let lost = |worn: f64| {
+        let mut case = disc();
+        case.setting.contacts[0].surfaces = Surfaces { wear: 1.0, ..Surfaces::default() };
+        let touch = &mut case.now.contacts[0][0];
+        touch.worn = worn;
+        case.now.bodies[0] = moved(0.0, 0.0);
+        case.now.forces[0].work = Some([0.1, 0.0]);
+        let found = signorini_audit::path::check(&case.setting, &case.before, &case.now);
+        found.into_iter().any(|f| f.outcome != signorini_audit::Outcome::Fine)
+    };
+    assert!(!lost(0.1) && lost(0.0));
+}

@@ -1,4 +1,4 @@
-//! Forces and tangent of cells at finite strain.
+//! Forces and tangent of cells from a stress law.
 //!
 //! `Π = Σ_q w_q (V(F_q) + U(θ_q))` with the dilatation `θ = P φ(F)`, projected on polynomials of one degree less as the
 //! divergence is at small strain (Simo, Taylor & Pister 1985 for degree 1), or not at all. `P` is its own adjoint under the
@@ -6,8 +6,9 @@
 //! `Σ w U''(θ) (P φ' δF)²` to `V'' + p φ''`: symmetric, with an energy.
 
 use super::SolidBody;
-use crate::hyperelastic::{Response, StrainError, Tensor};
-use crate::material::Space;
+use super::spatial::spatial;
+use crate::law::{Response, StrainError, StressLaw, Tensor};
+use crate::material::{Elastic, Space};
 use crate::stiffness::{Table, pressures, projects};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
@@ -30,6 +31,8 @@ pub(super) struct Gradients {
     components: &'static [usize],
     pub rows: DMatrix<f64>,
     pub weights: Vec<f64>,
+    /// Constants and law at each point.
+    pub laws: Vec<(Elastic, StressLaw)>,
 }
 
 impl Gradients {
@@ -49,7 +52,7 @@ impl Gradients {
 }
 
 impl<const D: usize> SolidBody<D> {
-    pub(super) fn finite_strain(&self, u: &[f64], order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+    pub(super) fn integrated(&self, u: &[f64], order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let of = |cell: usize| self.cell(cell, u, order).map_err(|e| self.refused(cell, e));
         let cells = (0..self.body().mesh.cell_count()).into_par_iter();
         let found: Vec<Result<CellForces, BodyError>> = cells.map(of).collect();
@@ -90,9 +93,11 @@ impl<const D: usize> SolidBody<D> {
         let count = components.len();
         let mut rows = DMatrix::<f64>::zeros(count * table.points.len(), n * D);
         let mut weights = Vec::with_capacity(table.points.len());
+        let mut laws = Vec::with_capacity(table.points.len());
         for (q, (_, w)) in table.points.iter().enumerate() {
             let (x, jacobian) = body.mesh.jacobian(cell, &table.map[q]);
             weights.push(w * determinant(&jacobian) * self.bodies.measure(&x));
+            laws.push(self.material.at(&spatial(&x)));
             let inverse = inverse(&jacobian);
             for (a, slope) in table.basis[q].gradient.iter().enumerate() {
                 let along: [f64; D] = std::array::from_fn(|j| (0..D).map(|k| slope[k] * inverse[(k, j)]).sum());
@@ -108,7 +113,7 @@ impl<const D: usize> SolidBody<D> {
                 }
             }
         }
-        Gradients { components, rows, weights }
+        Gradients { components, rows, weights, laws }
     }
 
     /// The projection of the dilatation at the points of a cell to those of a table, where there is one.
@@ -125,8 +130,12 @@ impl<const D: usize> SolidBody<D> {
         Some(pressures::<D>(basis, to).transpose() * factor.solve(&weighted))
     }
 
+    /// The tangent of a cell in a state, functions in the order and sign of the basis.
+    pub(super) fn tangent_of(&self, cell: usize, u: &[f64]) -> Result<DMatrix<f64>, StrainError> {
+        Ok(self.cell(cell, u, Order::Second)?.tangent.unwrap_or_default())
+    }
+
     fn cell(&self, cell: usize, u: &[f64], order: Order) -> Result<CellForces, StrainError> {
-        let (elastic, law) = (&self.body().material, self.law);
         let (unknowns, signs) = self.unknowns_of(cell);
         let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
         let at = self.gradients(cell, self.table(cell));
@@ -138,6 +147,7 @@ impl<const D: usize> SolidBody<D> {
         let mut dilatations: Vec<Response> = Vec::new();
         for q in 0..points {
             let f = at.deformation(q, &displacement);
+            let (elastic, law) = &at.laws[q];
             if self.bodies.space == Space::PlaneStress {
                 responses.push(law.plane_stress(elastic, &f)?);
                 continue;
@@ -155,10 +165,8 @@ impl<const D: usize> SolidBody<D> {
             let theta = projection.as_ref().map_or(phi.clone(), |p| p * &phi);
             let mut pressure = DVector::<f64>::zeros(points);
             for q in 0..points {
-                let [value, slope, second] = law.volumetric(elastic, theta[q]);
-                if !value.is_finite() {
-                    return Err(StrainError::Inverted { jacobian: theta[q] });
-                }
+                let (elastic, law) = &at.laws[q];
+                let [value, slope, second] = law.volumetric(elastic, theta[q])?;
                 energy += at.weights[q] * value;
                 (pressure[q], curvature[q]) = (slope, second);
             }

@@ -2,8 +2,8 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::hyperelastic::StressLaw;
-use crate::material::{Space, von_mises};
+use crate::law::StressLaw;
+use crate::material::{Elastic, Space, von_mises};
 use crate::stiffness::Table;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
@@ -59,7 +59,6 @@ impl<const D: usize> SolidBody<D> {
     }
 
     fn points_of(&self, cell: usize, table: &Table, u: &[f64]) -> Vec<Shown> {
-        let (elastic, law) = (&self.body().material, self.law);
         let (unknowns, signs) = self.unknowns_of(cell);
         let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
         let at = self.gradients(cell, table);
@@ -68,12 +67,16 @@ impl<const D: usize> SolidBody<D> {
         // The pressure as it acts in the cell: projected where the dilatation is.
         let pressure = |q: usize, f: &Matrix3<f64>, projected: &Option<DVector<f64>>| match projected {
             Some(p) => p[q],
-            None => law.volumetric(elastic, law.dilatation(f).energy)[1],
+            None => {
+                let (elastic, law) = &at.laws[q];
+                law.volumetric(elastic, law.dilatation(f).energy).map_or(f64::NAN, |u| u[1])
+            }
         };
         let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own) };
         (0..table.points.len())
             .map(|q| {
                 let f = at.deformation(q, &gradients);
+                let (elastic, law) = &at.laws[q];
                 let stress = if plane_stress {
                     law.plane_stress(elastic, &f).map(|r| r.stress).unwrap_or_default()
                 } else {
@@ -81,9 +84,9 @@ impl<const D: usize> SolidBody<D> {
                 };
                 let piola = Matrix3::from_fn(|i, j| stress[3 * i + j]);
                 // In plane stress the thickness changes as well, with no stress across.
-                let cauchy = match law {
-                    StressLaw::LinearElastic => piola,
-                    _ => piola * f.transpose() / self.volume_ratio(&f),
+                let cauchy = match law.is_small_strain() {
+                    true => piola,
+                    false => piola * f.transpose() / self.volume_ratio((elastic, law), &f),
                 };
                 let mut moved = Vector::<3>::zeros();
                 for (a, v) in table.basis[q].value.iter().enumerate() {
@@ -94,9 +97,9 @@ impl<const D: usize> SolidBody<D> {
             .collect()
     }
 
-    fn volume_ratio(&self, f: &Matrix3<f64>) -> f64 {
+    fn volume_ratio(&self, (elastic, law): (&Elastic, &StressLaw), f: &Matrix3<f64>) -> f64 {
         let across = if self.bodies.space == Space::PlaneStress {
-            self.law.stretch_across(&self.body().material, f)
+            law.stretch_across(elastic, f)
         } else {
             f[(2, 2)]
         };
@@ -106,13 +109,15 @@ impl<const D: usize> SolidBody<D> {
     }
 
     fn projected_pressure(&self, cell: usize, to: &Table, own: &DVector<f64>) -> Option<DVector<f64>> {
-        let (elastic, law) = (&self.body().material, self.law);
         let inner = self.gradients(cell, self.table(cell));
         let project = self.projection(cell, &inner.weights, self.table(cell))?;
         let gradients = &inner.rows * own;
-        let phi = (0..inner.weights.len()).map(|q| law.dilatation(&inner.deformation(q, &gradients)).energy);
+        let phi = (0..inner.weights.len()).map(|q| inner.laws[q].1.dilatation(&inner.deformation(q, &gradients)).energy);
         let theta = project * DVector::from_iterator(inner.weights.len(), phi);
-        let slopes = theta.map(|t| law.volumetric(elastic, t)[1]);
+        let slope = |(t, (elastic, law)): (&f64, &(Elastic, StressLaw))| {
+            law.volumetric(elastic, *t).map_or(f64::NAN, |u| u[1])
+        };
+        let slopes = DVector::from_iterator(inner.weights.len(), theta.iter().zip(&inner.laws).map(slope));
         self.projection(cell, &inner.weights, to).map(|p| p * slopes)
     }
 

@@ -3,15 +3,14 @@
 use super::SolidBody;
 use super::faces::Faces;
 use super::spatial::spatial;
-use crate::StressLaw;
 use crate::stiffness::{Table, traction};
 use signorini_geometry::Point;
 use signorini_mechanics::{BodyState, Direction, Function, Site};
 
 impl<const D: usize> SolidBody<D> {
-    /// `σ n` with the normal at rest, and what changes it; none at edges and at finite strain.
+    /// `σ n` with the normal at rest, and what changes it; none at edges, and of materials other than uniform linear elastic ones.
     pub(super) fn traction_at(&self, state: &BodyState, site: &Site) -> Option<Direction> {
-        if self.law != StressLaw::LinearElastic || self.edge_at(site).is_some() {
+        if !self.material.is_uniform_hooke() || self.edge_at(site).is_some() {
             return None;
         }
         let rows = self.faces.point(site).traction.get_or_init(|| self.traction_rows(&self.faces, site));

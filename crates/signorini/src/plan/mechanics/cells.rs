@@ -153,7 +153,7 @@ impl Planner<'_> {
     }
 
     /// Names of coordinates.
-    pub(super) fn places(&self) -> &'static [&'static str] {
+    pub(in crate::plan) fn places(&self) -> &'static [&'static str] {
         if self.space == In::ThreeD { &["x", "y", "z"] } else { &["x", "y"] }
     }
 

@@ -1,7 +1,7 @@
 //! Stress laws against differences and homogeneous stretches.
 
 use nalgebra::Matrix3;
-use signorini_solid::hyperelastic::{StrainError, StressLaw, Volumetric};
+use signorini_solid::law::{StrainError, StressLaw, Volumetric};
 use signorini_solid::material::Elastic;
 
 const LAWS: [StressLaw; 4] = [

@@ -1,4 +1,5 @@
 //! Parts by themselves.
 
 mod hyperelastic;
+mod rubber;
 mod stiffness;

@@ -8,21 +8,41 @@
 //! | neo-Hooke | `μ/2 (I1 - 3 - 2 ln J)` | `J` | `λ/4 (J² - 1 - 2 ln J)` or `λ/2 ln² J` |
 //! | Saint-Venant–Kirchhoff | `μ E:E` | `tr E` | `λ/2 φ²` |
 //! | linear elasticity | `μ ε:ε` | `tr ε` | `λ/2 φ²` |
+//! | Mooney-Rivlin, Yeoh, Ogden, Arruda-Boyce, fibres | of `J^(-1/3) F` | `J` | `K/2 (J - 1)²` and others of [`Volumetric`] |
 //!
 //! All laws are that of Hooke at small strain (Ogden, *Non-linear elastic deformations*, 1984; Wriggers, *Nonlinear finite
 //! element methods*, 2008). `λ/4 (J² - 1 - 2 ln J)` is convex in `J`, `λ/2 ln² J` only below `J = e`; both resist `J → 0`.
 //! Saint-Venant–Kirchhoff softens in compression: the uniaxial stress falls again below a stretch of `1/√3`.
 
-use crate::material::{Elastic, Space};
-use nalgebra::{Matrix3, SMatrix, SVector};
+mod arruda_boyce;
+mod fibre;
+mod invariants;
+mod linear_elastic;
+mod mooney_rivlin;
+mod neo_hooke;
+mod ogden;
+mod principal;
+mod rubber;
+mod saint_venant_kirchhoff;
+mod tensor;
+mod volumetric;
+mod yeoh;
 
-/// A second-order tensor, row by row.
-pub type Tensor = SVector<f64, 9>;
-/// A fourth-order tensor: row and column as [`Tensor`].
-pub type Tensor4 = SMatrix<f64, 9, 9>;
+pub use arruda_boyce::ArrudaBoyce;
+pub use fibre::Fibre;
+pub use mooney_rivlin::MooneyRivlin;
+pub use ogden::{MOST_TERMS, Ogden};
+pub use rubber::{Isochoric, Rubber};
+pub use tensor::{Response, Tensor, Tensor4};
+pub use volumetric::Volumetric;
+pub use yeoh::Yeoh;
+
+use crate::material::{Elastic, Space};
+use nalgebra::{Matrix3, Vector3};
+use tensor::{flat, fourth};
 
 /// How stress follows from strain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum StressLaw {
     /// Small strain.
     #[default]
@@ -30,16 +50,7 @@ pub enum StressLaw {
     NeoHooke(Volumetric),
     /// For large rotations with small strain.
     SaintVenantKirchhoff,
-}
-
-/// The volumetric energy of neo-Hooke.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Volumetric {
-    /// `λ/4 (J² - 1 - 2 ln J)`.
-    #[default]
-    Quadratic,
-    /// `λ/2 ln² J`.
-    Logarithmic,
+    Rubber(Rubber),
 }
 
 /// A deformation that a law does not cover.
@@ -54,39 +65,39 @@ pub enum StrainError {
     Compressed { stretch: f64 },
 }
 
-/// Energy with its derivatives in `F`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
-    pub energy: f64,
-    /// First Piola stress.
-    pub stress: Tensor,
-    pub tangent: Tensor4,
-}
-
 /// The smallest principal stretch of Saint-Venant–Kirchhoff: just above that of the largest compressive stress, `1/√3`.
 pub const LEAST_STRETCH: f64 = 0.6;
 
-fn flat(m: &Matrix3<f64>) -> Tensor {
-    Tensor::from_fn(|k, _| m[(k / 3, k % 3)])
-}
-
-/// A fourth-order tensor by its components `iJkL`.
-fn fourth(f: impl Fn(usize, usize, usize, usize) -> f64) -> Tensor4 {
-    Tensor4::from_fn(|r, c| f(r / 3, r % 3, c / 3, c % 3))
-}
-
-fn delta(i: usize, j: usize) -> f64 {
-    f64::from(u8::from(i == j))
-}
+/// Iterations for the stretch across a plane, and the most that its logarithm changes in one.
+const MOST_ITERATIONS: usize = 100;
+const MOST_STEP: f64 = 0.5;
 
 impl StressLaw {
     /// As it is called in a summary.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> String {
         match self {
-            StressLaw::LinearElastic => "linear elastic",
-            StressLaw::NeoHooke(Volumetric::Quadratic) => "neo-Hooke, U = lambda/4 (J^2 - 1 - 2 ln J)",
-            StressLaw::NeoHooke(Volumetric::Logarithmic) => "neo-Hooke, U = lambda/2 ln^2 J",
-            StressLaw::SaintVenantKirchhoff => "Saint-Venant-Kirchhoff",
+            StressLaw::LinearElastic => "linear elastic".into(),
+            StressLaw::NeoHooke(volumetric) => format!("neo-Hooke, {}", volumetric.formula("lambda")),
+            StressLaw::SaintVenantKirchhoff => "Saint-Venant-Kirchhoff".into(),
+            StressLaw::Rubber(law) => law.name(),
+        }
+    }
+
+    /// Whether strains and rotations are small: stress, loads and areas are those of the undeformed body.
+    pub fn is_small_strain(&self) -> bool {
+        matches!(self, StressLaw::LinearElastic)
+    }
+
+    /// Whether stress is linear in the displacement gradient.
+    pub fn is_linear(&self) -> bool {
+        matches!(self, StressLaw::LinearElastic)
+    }
+
+    /// The direction of fibres, where there are any.
+    pub fn fibre_direction(&self) -> Option<&Vector3<f64>> {
+        match self {
+            StressLaw::Rubber(law) => law.fibre.as_ref().map(|fibre| &fibre.direction),
+            _ => None,
         }
     }
 
@@ -94,15 +105,15 @@ impl StressLaw {
     ///
     /// # Errors
     /// Inverted material; with Saint-Venant–Kirchhoff also strong compression.
-    pub fn check(self, f: &Matrix3<f64>) -> Result<(), StrainError> {
-        if self == StressLaw::LinearElastic {
+    pub fn check(&self, f: &Matrix3<f64>) -> Result<(), StrainError> {
+        if self.is_small_strain() {
             return Ok(());
         }
         let jacobian = f.determinant();
         if jacobian.is_nan() || jacobian <= 0.0 {
             return Err(StrainError::Inverted { jacobian });
         }
-        if self == StressLaw::SaintVenantKirchhoff {
+        if *self == StressLaw::SaintVenantKirchhoff {
             let stretch = (f.transpose() * f).symmetric_eigenvalues().min().max(0.0).sqrt();
             if stretch < LEAST_STRETCH {
                 return Err(StrainError::Compressed { stretch });
@@ -112,48 +123,22 @@ impl StressLaw {
     }
 
     /// `V` with its derivatives.
-    pub fn deviatoric(self, elastic: &Elastic, f: &Matrix3<f64>) -> Response {
+    pub fn deviatoric(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Response {
         let (_, mu) = elastic.lame(Space::Solid);
         match self {
-            StressLaw::LinearElastic => {
-                let h = f - Matrix3::identity();
-                let strain = (h + h.transpose()) * 0.5;
-                Response {
-                    energy: mu * strain.norm_squared(),
-                    stress: flat(&(strain * (2.0 * mu))),
-                    tangent: fourth(|i, j, k, l| mu * (delta(i, k) * delta(j, l) + delta(i, l) * delta(j, k))),
-                }
-            }
-            StressLaw::NeoHooke(_) => {
-                let inverse = f.try_inverse().unwrap_or_else(Matrix3::zeros);
-                Response {
-                    energy: 0.5 * mu * (f.norm_squared() - 3.0 - 2.0 * f.determinant().ln()),
-                    stress: flat(&((f - inverse.transpose()) * mu)),
-                    tangent: fourth(|i, j, k, l| mu * (delta(i, k) * delta(j, l) + inverse[(j, k)] * inverse[(l, i)])),
-                }
-            }
-            StressLaw::SaintVenantKirchhoff => {
-                let strain = (f.transpose() * f - Matrix3::identity()) * 0.5;
-                let s = strain * (2.0 * mu);
-                let left = f * f.transpose();
-                Response {
-                    energy: mu * strain.norm_squared(),
-                    stress: flat(&(f * s)),
-                    tangent: fourth(|i, j, k, l| {
-                        delta(i, k) * s[(j, l)] + mu * (left[(i, k)] * delta(j, l) + f[(i, l)] * f[(k, j)])
-                    }),
-                }
-            }
+            StressLaw::LinearElastic => linear_elastic::energy(mu, f),
+            StressLaw::NeoHooke(_) => neo_hooke::energy(mu, f),
+            StressLaw::SaintVenantKirchhoff => saint_venant_kirchhoff::energy(mu, f),
+            StressLaw::Rubber(law) => law.deviatoric(f),
         }
     }
 
     /// `φ` with its derivatives.
-    pub fn dilatation(self, f: &Matrix3<f64>) -> Response {
+    pub fn dilatation(&self, f: &Matrix3<f64>) -> Response {
         match self {
-            StressLaw::LinearElastic => {
-                Response { energy: f.trace() - 3.0, stress: flat(&Matrix3::identity()), tangent: Tensor4::zeros() }
-            }
-            StressLaw::NeoHooke(_) => {
+            StressLaw::LinearElastic => linear_elastic::dilatation(f),
+            StressLaw::SaintVenantKirchhoff => saint_venant_kirchhoff::dilatation(f),
+            StressLaw::NeoHooke(_) | StressLaw::Rubber(_) => {
                 let jacobian = f.determinant();
                 let inverse = f.try_inverse().unwrap_or_else(Matrix3::zeros);
                 let g = |i: usize, j: usize| inverse[(j, i)];
@@ -163,27 +148,23 @@ impl StressLaw {
                     tangent: fourth(|i, j, k, l| jacobian * (g(i, j) * g(k, l) - g(k, j) * g(i, l))),
                 }
             }
-            StressLaw::SaintVenantKirchhoff => Response {
-                energy: 0.5 * (f.norm_squared() - 3.0),
-                stress: flat(f),
-                tangent: fourth(|i, j, k, l| delta(i, k) * delta(j, l)),
-            },
         }
     }
 
     /// `U`, `U'`, `U''` at a value of `φ`.
-    pub fn volumetric(self, elastic: &Elastic, x: f64) -> [f64; 3] {
+    ///
+    /// # Errors
+    /// A volume that is not positive.
+    pub fn volumetric(&self, elastic: &Elastic, x: f64) -> Result<[f64; 3], StrainError> {
         let (lambda, _) = elastic.lame(Space::Solid);
+        let of_volume = |volumetric: Volumetric, modulus: f64| match x > 0.0 {
+            true => Ok(volumetric.energy(modulus, x)),
+            false => Err(StrainError::Inverted { jacobian: x }),
+        };
         match self {
-            StressLaw::NeoHooke(Volumetric::Quadratic) => [
-                0.25 * lambda * (x * x - 1.0 - 2.0 * x.ln()),
-                0.5 * lambda * (x - 1.0 / x),
-                0.5 * lambda * (1.0 + 1.0 / (x * x)),
-            ],
-            StressLaw::NeoHooke(Volumetric::Logarithmic) => {
-                [0.5 * lambda * x.ln().powi(2), lambda * x.ln() / x, lambda * (1.0 - x.ln()) / (x * x)]
-            }
-            _ => [0.5 * lambda * x * x, lambda * x, lambda],
+            StressLaw::NeoHooke(volumetric) => of_volume(*volumetric, lambda),
+            StressLaw::Rubber(law) => of_volume(law.volumetric, law.bulk_modulus),
+            _ => Ok([0.5 * lambda * x * x, lambda * x, lambda]),
         }
     }
 
@@ -191,10 +172,10 @@ impl StressLaw {
     ///
     /// # Errors
     /// Deformations that the law does not cover.
-    pub fn response(self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
+    pub fn response(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
         self.check(f)?;
         let (v, phi) = (self.deviatoric(elastic, f), self.dilatation(f));
-        let [u, du, ddu] = self.volumetric(elastic, phi.energy);
+        let [u, du, ddu] = self.volumetric(elastic, phi.energy)?;
         Ok(Response {
             energy: v.energy + u,
             stress: v.stress + phi.stress * du,
@@ -207,13 +188,13 @@ impl StressLaw {
     ///
     /// # Errors
     /// Deformations that the law does not cover.
-    pub fn plane_stress(self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
+    pub fn plane_stress(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
         let mut f = *f;
         for k in 0..2 {
             (f[(k, 2)], f[(2, k)]) = (0.0, 0.0);
         }
         let jacobian = f[(0, 0)] * f[(1, 1)] - f[(0, 1)] * f[(1, 0)];
-        if self != StressLaw::LinearElastic && (jacobian.is_nan() || jacobian <= 0.0) {
+        if !self.is_small_strain() && (jacobian.is_nan() || jacobian <= 0.0) {
             return Err(StrainError::Inverted { jacobian });
         }
         f[(2, 2)] = self.stretch_across(elastic, &f);
@@ -224,7 +205,7 @@ impl StressLaw {
     }
 
     /// The stretch across the plane that leaves no stress there.
-    pub fn stretch_across(self, elastic: &Elastic, f: &Matrix3<f64>) -> f64 {
+    pub fn stretch_across(&self, elastic: &Elastic, f: &Matrix3<f64>) -> f64 {
         let jacobian = f[(0, 0)] * f[(1, 1)] - f[(0, 1)] * f[(1, 0)];
         let (lambda, mu) = elastic.lame(Space::Solid);
         let ratio = lambda / (lambda + 2.0 * mu);
@@ -242,7 +223,7 @@ impl StressLaw {
             // everywhere, from the right side after its first step.
             StressLaw::NeoHooke(Volumetric::Logarithmic) => {
                 let mut y = -2.0 * ratio * jacobian.ln();
-                for _ in 0..100 {
+                for _ in 0..MOST_ITERATIONS {
                     let value = mu * (y.exp() - 1.0) + lambda * (jacobian.ln() + 0.5 * y);
                     let step = value / (mu * y.exp() + 0.5 * lambda);
                     y -= step;
@@ -252,6 +233,30 @@ impl StressLaw {
                 }
                 (0.5 * y).exp()
             }
+            StressLaw::NeoHooke(Volumetric::Linear) | StressLaw::Rubber(_) => {
+                self.free_stretch(elastic, f, -ratio * jacobian.ln())
+            }
         }
+    }
+
+    /// The stretch across the plane without stress there, by Newton's method for its logarithm from a start.
+    fn free_stretch(&self, elastic: &Elastic, f: &Matrix3<f64>, start: f64) -> f64 {
+        let mut f = *f;
+        let mut y = start;
+        for _ in 0..MOST_ITERATIONS {
+            let stretch = y.exp();
+            f[(2, 2)] = stretch;
+            let Ok(at) = self.response(elastic, &f) else { return f64::NAN };
+            // Kirchhoff stress across, and its change with y.
+            let (value, slope) = (stretch * at.stress[8], stretch * (at.stress[8] + stretch * at.tangent[(8, 8)]));
+            let step = (value / slope).clamp(-MOST_STEP, MOST_STEP);
+            // A stress that falls with the stretch leads away from the root.
+            let step = if slope > 0.0 { step } else { MOST_STEP * value.signum() };
+            y -= step;
+            if step.abs() <= 1e-15 * (1.0 + y.abs()) {
+                break;
+            }
+        }
+        y.exp()
     }
 }

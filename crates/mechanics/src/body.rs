@@ -166,7 +166,7 @@ pub struct BodyFields {
 
 /// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
 /// a body without it implements these as they are.
-pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Send + Sync {
+pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Inelastic + Send + Sync {
     fn name(&self) -> &str;
 
     /// Number of unknowns.
@@ -381,6 +381,25 @@ pub trait BoxOfMaterial {
     /// What a body in a box of cells is like as a whole: none of other bodies.
     fn means(&self, _state: &BodyState) -> Option<Means> {
         None
+    }
+}
+
+/// A body that does not give back all the work that was done on it.
+pub trait Inelastic {
+    /// Whether the stress of the body depends on the states before.
+    fn is_inelastic(&self) -> bool {
+        false
+    }
+
+    /// The internal numbers with which an increment starts from a state that was reached: those of the state itself of bodies
+    /// without history.
+    fn renewed(&self, state: &BodyState) -> Vec<f64> {
+        state.internal.clone()
+    }
+
+    /// Energy that the body dissipated between the start of the increment and a state.
+    fn dissipated(&self, _state: &BodyState) -> f64 {
+        0.0
     }
 }
 

@@ -30,6 +30,8 @@ pub struct IncrementResult {
     pub energy: f64,
     /// Energy that the friction of each contact took in the increment.
     pub dissipated: Vec<f64>,
+    /// Energy that each body dissipated in the increment.
+    pub dissipated_in_bodies: Vec<f64>,
     pub unknowns: usize,
     /// Largest unbalanced force relative to the largest of all.
     pub imbalance: f64,
@@ -145,6 +147,9 @@ impl System {
         let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
+            if body.is_inelastic() {
+                state.internal = body.renewed(state);
+            }
             body.prescribe(time, state);
         }
         if let Some((k, share)) = self.first_passage(from, &start)? {
@@ -393,6 +398,7 @@ impl System {
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
         let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<Vec<_>, _>>()?;
         let dissipated = sites.iter().map(|list| list.iter().map(SiteResult::dissipated).sum()).collect();
+        let dissipated_in_bodies = self.bodies.iter().zip(&state.bodies).map(|(b, s)| b.dissipated(s)).collect();
         Ok(IncrementResult {
             iterations,
             history,
@@ -400,6 +406,7 @@ impl System {
             support_forces,
             energy: at.energy,
             dissipated,
+            dissipated_in_bodies,
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,

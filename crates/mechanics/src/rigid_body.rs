@@ -5,7 +5,7 @@
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
 use crate::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, ContactSides, Contribution, Elimination, Hold,
     Kinematics, Load, PlaceError, Slack,
 };
 use crate::pair::{any_tangent, axis};
@@ -357,6 +357,8 @@ impl ContactSides for RigidBody {}
 impl Slack for RigidBody {}
 
 impl BoxOfMaterial for RigidBody {}
+
+impl Inelastic for RigidBody {}
 
 struct RigidMaster<'a> {
     body: &'a RigidBody,

@@ -1,8 +1,12 @@
 //! Materials of bodies in three dimensions.
 
 use super::{List, Value};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
+use std::fmt;
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -26,6 +30,12 @@ pub enum Material {
     /// Hyperelastic: Arruda-Boyce, with the five terms of its series in the invariant I1 without change of volume;
     /// requires `strain = "finite"`.
     ArrudaBoyce(ArrudaBoyce),
+    /// Linear elastic with three perpendicular planes of symmetry; with `strain = "finite"` linear in the Green-Lagrange
+    /// strain.
+    Orthotropic(Orthotropic),
+    /// Isotropic, elastic-plastic: von Mises with isotropic and kinematic hardening; with `strain = "finite"` in logarithmic
+    /// strains. Not in plane stress.
+    ElasticPlastic(ElasticPlastic),
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
@@ -47,6 +57,84 @@ pub struct NeoHooke {
     /// Energy of the change of volume, with Lamé's constant `lambda`: `quadratic`, `lambda/4 (J^2 - 1 - 2 ln J)`, or
     /// `logarithmic`, `lambda/2 ln(J)^2`; `quadratic` if left out.
     pub volumetric: Option<String>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Orthotropic {
+    /// `E1`, `E2`, `E3` along the axes of the material, forces per area.
+    pub youngs_moduli: List<Value>,
+    /// `v12`, `v13`, `v23`: `vij` is the contraction along axis j per stretch along axis i by a stress along axis i.
+    pub poissons_ratios: List<Value>,
+    /// `G12`, `G13`, `G23`, forces per area.
+    pub shear_moduli: List<Value>,
+    /// The first two axes of the material, perpendicular and of any length, such as `[[1, 0, 0], [0, 1, 0]]`; the third is
+    /// perpendicular to both. The axes of the case if left out. In the plane one axis is along z.
+    pub axes: Option<List<List<Value>>>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticPlastic {
+    /// Young's modulus, a force per area.
+    pub youngs_modulus: Value,
+    /// Poisson's ratio, above -1 and below 0.5.
+    pub poissons_ratio: Value,
+    /// Yield stress, a force per area, or a table `[[stress, plastic strain], …]` from a plastic strain of 0 on. With
+    /// `strain = "finite"` true stress and logarithmic plastic strain.
+    pub yield_stress: YieldStress,
+    /// Modulus of linear isotropic hardening: yield stress per plastic strain, a force per area, beyond the last row of a
+    /// table; 0 if left out.
+    pub hardening: Option<Value>,
+    /// Modulus of linear kinematic hardening (Prager): uniaxial stress per plastic strain, a force per area; 0 if left out.
+    /// At small strain only.
+    pub kinematic_hardening: Option<Value>,
+}
+
+/// A yield stress, or a table of it.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum YieldStress {
+    Constant(Value),
+    Table(List<List<Value>>),
+}
+
+impl JsonSchema for YieldStress {
+    fn schema_name() -> Cow<'static, str> {
+        "YieldStress".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (value, table) = (generator.subschema_for::<Value>(), generator.subschema_for::<List<List<Value>>>());
+        json_schema!({ "anyOf": [value, table] })
+    }
+}
+
+impl<'de> Deserialize<'de> for YieldStress {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> Visitor<'de> for Reader {
+            type Value = YieldStress;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a stress, or a table such as [[250, 0], [300, 0.05]] of stress and plastic strain")
+            }
+            fn visit_f64<E: Error>(self, value: f64) -> Result<YieldStress, E> {
+                Ok(YieldStress::Constant(Value::Number(value)))
+            }
+            fn visit_i64<E: Error>(self, value: i64) -> Result<YieldStress, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_u64<E: Error>(self, value: u64) -> Result<YieldStress, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<YieldStress, E> {
+                Ok(YieldStress::Constant(Value::Text(text.into())))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<YieldStress, A::Error> {
+                List::deserialize(SeqAccessDeserializer::new(list)).map(YieldStress::Table)
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

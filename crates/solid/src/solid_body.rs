@@ -10,6 +10,7 @@ mod edge;
 mod edges;
 mod faces;
 mod fields;
+mod history;
 mod hold;
 mod loads;
 mod master;
@@ -28,6 +29,7 @@ use crate::solid_material::SolidMaterial;
 use crate::stiffness::{Table, stiffness};
 use edge::EdgeCurve;
 use faces::Faces;
+use history::History;
 use rayon::prelude::*;
 use signorini_fem::{DofMap, Group, Mesh, MeshError};
 use signorini_geometry::Point;
@@ -72,6 +74,7 @@ pub struct SolidBody<const D: usize> {
     /// Coefficients of the reference position.
     position: Vec<Point<D>>,
     size: f64,
+    history: History,
 }
 
 impl<const D: usize> SolidBody<D> {
@@ -135,7 +138,10 @@ impl<const D: usize> SolidBody<D> {
             stiffness: Vec::new(),
             position,
             size,
+            history: History::default(),
         };
+        let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
+        out.history = History::new(out.law(), points);
         if out.law().is_linear() {
             out.stiffness = out.linear_stiffness()?;
         }
@@ -185,7 +191,7 @@ impl<const D: usize> SolidBody<D> {
     /// The stiffness of all cells of a linear law.
     fn linear_stiffness(&self) -> Result<Vec<(Vec<u32>, Vec<f64>)>, SolidError> {
         let body = self.body();
-        let rest = vec![0.0; body.unknowns()];
+        let rest = self.start();
         let of = |cell: usize| {
             let basis = body.dofs.basis(cell);
             let matrix = if self.material.is_uniform_hooke() {
@@ -261,18 +267,18 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn start(&self) -> BodyState {
-        BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
+        BodyState { configuration: vec![0.0; self.unknowns()], internal: self.history.start(self.law()) }
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
-        BodyState { configuration, internal: Vec::new() }
+        BodyState { configuration, internal: state.internal.clone() }
     }
 
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let u = &state.configuration;
         if !self.law().is_linear() {
-            return self.integrated(u, order, out);
+            return self.integrated(state, order, out);
         }
         let product = |(unknowns, values): &(Vec<u32>, Vec<f64>)| -> Vec<f64> {
             let own: Vec<f64> = unknowns.iter().map(|k| u[*k as usize]).collect();
@@ -376,7 +382,7 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn fields(&self, state: &BodyState) -> BodyFields {
-        self.shown(&state.configuration)
+        self.shown(state)
     }
 }
 

@@ -52,7 +52,7 @@ impl SolidMaterial {
     pub fn at(&self, x: &Point<3>) -> (Elastic, StressLaw) {
         match &self.by_position {
             Some(of) => of(x),
-            None => (self.elastic, self.law),
+            None => (self.elastic, self.law.clone()),
         }
     }
 

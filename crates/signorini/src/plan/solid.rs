@@ -1,8 +1,10 @@
 //! From the statement to the cells of solids, their materials and laws of friction.
 
+mod elastic_plastic;
 mod friction;
 mod material;
 mod mesh;
+mod orthotropic;
 mod rubber;
 
 use super::mechanics::odd_modulus;

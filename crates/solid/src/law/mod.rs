@@ -8,6 +8,8 @@
 //! | neo-Hooke | `μ/2 (I1 - 3 - 2 ln J)` | `J` | `λ/4 (J² - 1 - 2 ln J)` or `λ/2 ln² J` |
 //! | Saint-Venant–Kirchhoff | `μ E:E` | `tr E` | `λ/2 φ²` |
 //! | linear elasticity | `μ ε:ε` | `tr ε` | `λ/2 φ²` |
+//! | orthotropic | `ε:C:ε/2` or `E:C:E/2` | | 0 |
+//! | elastic-plastic | `μ (dev ε_e)²` | `tr ε` or `J` | `K/2 φ²` or `K/2 ln² J` |
 //! | Mooney-Rivlin, Yeoh, Ogden, Arruda-Boyce, fibres | of `J^(-1/3) F` | `J` | `K/2 (J - 1)²` and others of [`Volumetric`] |
 //!
 //! All laws are that of Hooke at small strain (Ogden, *Non-linear elastic deformations*, 1984; Wriggers, *Nonlinear finite
@@ -15,12 +17,15 @@
 //! Saint-Venant–Kirchhoff softens in compression: the uniaxial stress falls again below a stretch of `1/√3`.
 
 mod arruda_boyce;
+mod elastic_plastic;
 mod fibre;
+mod hardening;
 mod invariants;
 mod linear_elastic;
 mod mooney_rivlin;
 mod neo_hooke;
 mod ogden;
+mod orthotropic;
 mod principal;
 mod rubber;
 mod saint_venant_kirchhoff;
@@ -29,9 +34,12 @@ mod volumetric;
 mod yeoh;
 
 pub use arruda_boyce::ArrudaBoyce;
+pub use elastic_plastic::{ElasticPlastic, Plastic};
 pub use fibre::Fibre;
+pub use hardening::{Hardening, HardeningError};
 pub use mooney_rivlin::MooneyRivlin;
 pub use ogden::{MOST_TERMS, Ogden};
+pub use orthotropic::{Orthotropic, OrthotropicError};
 pub use rubber::{Isochoric, Rubber};
 pub use tensor::{Response, Tensor, Tensor4};
 pub use volumetric::Volumetric;
@@ -42,7 +50,7 @@ use nalgebra::{Matrix3, Vector3};
 use tensor::{flat, fourth};
 
 /// How stress follows from strain.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum StressLaw {
     /// Small strain.
     #[default]
@@ -51,6 +59,9 @@ pub enum StressLaw {
     /// For large rotations with small strain.
     SaintVenantKirchhoff,
     Rubber(Rubber),
+    Orthotropic(Orthotropic),
+    /// With a history: the stress depends on the plastic strain of the last state.
+    ElasticPlastic(ElasticPlastic),
 }
 
 /// A deformation that a law does not cover.
@@ -60,7 +71,7 @@ pub enum StrainError {
     Inverted { jacobian: f64 },
     #[error(
         "a principal stretch of {stretch:.3} is below {LEAST_STRETCH}: Saint-Venant-Kirchhoff softens in compression; \
-         use neo-Hooke"
+         use neo-Hooke or another hyperelastic law"
     )]
     Compressed { stretch: f64 },
 }
@@ -80,17 +91,47 @@ impl StressLaw {
             StressLaw::NeoHooke(volumetric) => format!("neo-Hooke, {}", volumetric.formula("lambda")),
             StressLaw::SaintVenantKirchhoff => "Saint-Venant-Kirchhoff".into(),
             StressLaw::Rubber(law) => law.name(),
+            StressLaw::Orthotropic(law) if law.is_finite => "orthotropic, Saint-Venant-Kirchhoff".into(),
+            StressLaw::Orthotropic(_) => "orthotropic".into(),
+            StressLaw::ElasticPlastic(law) if law.is_finite => "elastic-plastic, logarithmic strain".into(),
+            StressLaw::ElasticPlastic(_) => "elastic-plastic".into(),
         }
     }
 
     /// Whether strains and rotations are small: stress, loads and areas are those of the undeformed body.
     pub fn is_small_strain(&self) -> bool {
-        matches!(self, StressLaw::LinearElastic)
+        match self {
+            StressLaw::LinearElastic => true,
+            StressLaw::Orthotropic(law) => !law.is_finite,
+            StressLaw::ElasticPlastic(law) => !law.is_finite,
+            _ => false,
+        }
     }
 
     /// Whether stress is linear in the displacement gradient.
     pub fn is_linear(&self) -> bool {
-        matches!(self, StressLaw::LinearElastic)
+        self.is_small_strain() && !self.has_history()
+    }
+
+    /// Whether stress depends on what was before.
+    pub fn has_history(&self) -> bool {
+        matches!(self, StressLaw::ElasticPlastic(_))
+    }
+
+    /// The history variables of a point at the start: none of elastic laws.
+    pub fn start(&self) -> Vec<f64> {
+        match self {
+            StressLaw::ElasticPlastic(law) => law.start(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A point of a law with history after an increment; none of elastic laws.
+    pub fn plastic(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> Option<Plastic> {
+        match self {
+            StressLaw::ElasticPlastic(law) => Some(law.point(elastic.lame(Space::Solid).1, f, history)),
+            _ => None,
+        }
     }
 
     /// The direction of fibres, where there are any.
@@ -113,7 +154,8 @@ impl StressLaw {
         if jacobian.is_nan() || jacobian <= 0.0 {
             return Err(StrainError::Inverted { jacobian });
         }
-        if *self == StressLaw::SaintVenantKirchhoff {
+        let is_quadratic = matches!(self, StressLaw::SaintVenantKirchhoff | StressLaw::Orthotropic(_));
+        if is_quadratic {
             let stretch = (f.transpose() * f).symmetric_eigenvalues().min().max(0.0).sqrt();
             if stretch < LEAST_STRETCH {
                 return Err(StrainError::Compressed { stretch });
@@ -122,14 +164,16 @@ impl StressLaw {
         Ok(())
     }
 
-    /// `V` with its derivatives.
-    pub fn deviatoric(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Response {
+    /// `V` with its derivatives, from a history.
+    pub fn deviatoric(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> Response {
         let (_, mu) = elastic.lame(Space::Solid);
         match self {
             StressLaw::LinearElastic => linear_elastic::energy(mu, f),
             StressLaw::NeoHooke(_) => neo_hooke::energy(mu, f),
             StressLaw::SaintVenantKirchhoff => saint_venant_kirchhoff::energy(mu, f),
             StressLaw::Rubber(law) => law.deviatoric(f),
+            StressLaw::Orthotropic(law) => law.energy(f),
+            StressLaw::ElasticPlastic(law) => law.point(mu, f, history).response,
         }
     }
 
@@ -137,8 +181,10 @@ impl StressLaw {
     pub fn dilatation(&self, f: &Matrix3<f64>) -> Response {
         match self {
             StressLaw::LinearElastic => linear_elastic::dilatation(f),
+            StressLaw::Orthotropic(_) => Response::zero(),
+            StressLaw::ElasticPlastic(law) if !law.is_finite => linear_elastic::dilatation(f),
             StressLaw::SaintVenantKirchhoff => saint_venant_kirchhoff::dilatation(f),
-            StressLaw::NeoHooke(_) | StressLaw::Rubber(_) => {
+            StressLaw::NeoHooke(_) | StressLaw::Rubber(_) | StressLaw::ElasticPlastic(_) => {
                 let jacobian = f.determinant();
                 let inverse = f.try_inverse().unwrap_or_else(Matrix3::zeros);
                 let g = |i: usize, j: usize| inverse[(j, i)];
@@ -156,7 +202,8 @@ impl StressLaw {
     /// # Errors
     /// A volume that is not positive.
     pub fn volumetric(&self, elastic: &Elastic, x: f64) -> Result<[f64; 3], StrainError> {
-        let (lambda, _) = elastic.lame(Space::Solid);
+        let (lambda, mu) = elastic.lame(Space::Solid);
+        let bulk = lambda + 2.0 / 3.0 * mu;
         let of_volume = |volumetric: Volumetric, modulus: f64| match x > 0.0 {
             true => Ok(volumetric.energy(modulus, x)),
             false => Err(StrainError::Inverted { jacobian: x }),
@@ -164,17 +211,35 @@ impl StressLaw {
         match self {
             StressLaw::NeoHooke(volumetric) => of_volume(*volumetric, lambda),
             StressLaw::Rubber(law) => of_volume(law.volumetric, law.bulk_modulus),
-            _ => Ok([0.5 * lambda * x * x, lambda * x, lambda]),
+            StressLaw::ElasticPlastic(law) if law.is_finite => of_volume(Volumetric::Logarithmic, bulk),
+            StressLaw::ElasticPlastic(_) => Ok([0.5 * bulk * x * x, bulk * x, bulk]),
+            StressLaw::LinearElastic | StressLaw::SaintVenantKirchhoff => {
+                Ok([0.5 * lambda * x * x, lambda * x, lambda])
+            }
+            StressLaw::Orthotropic(_) => Ok([0.0; 3]),
         }
     }
 
-    /// Energy, stress and tangent at a point, the stretch across the plane given.
+    /// Energy, stress and tangent at a point, the stretch across the plane given; of a law with history from its start.
     ///
     /// # Errors
     /// Deformations that the law does not cover.
     pub fn response(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
+        self.response_from(elastic, f, &self.start())
+    }
+
+    /// The same from a history.
+    ///
+    /// # Errors
+    /// Deformations that the law does not cover.
+    pub fn response_from(
+        &self,
+        elastic: &Elastic,
+        f: &Matrix3<f64>,
+        history: &[f64],
+    ) -> Result<Response, StrainError> {
         self.check(f)?;
-        let (v, phi) = (self.deviatoric(elastic, f), self.dilatation(f));
+        let (v, phi) = (self.deviatoric(elastic, f, history), self.dilatation(f));
         let [u, du, ddu] = self.volumetric(elastic, phi.energy)?;
         Ok(Response {
             energy: v.energy + u,
@@ -233,9 +298,13 @@ impl StressLaw {
                 }
                 (0.5 * y).exp()
             }
-            StressLaw::NeoHooke(Volumetric::Linear) | StressLaw::Rubber(_) => {
-                self.free_stretch(elastic, f, -ratio * jacobian.ln())
+            StressLaw::Orthotropic(law) if !law.is_finite => {
+                let mut f = *f;
+                f[(2, 2)] = 1.0;
+                let at = law.energy(&f);
+                1.0 - at.stress[8] / at.tangent[(8, 8)]
             }
+            _ => self.free_stretch(elastic, f, -ratio * jacobian.ln()),
         }
     }
 

@@ -34,9 +34,6 @@ pub(super) fn flat(m: &Matrix3<f64>) -> Tensor {
     Tensor::from_fn(|k, _| m[(k / 3, k % 3)])
 }
 
-pub(super) fn matrix(t: &Tensor) -> Matrix3<f64> {
-    Matrix3::from_fn(|i, j| t[3 * i + j])
-}
 
 /// A fourth-order tensor by its components `iJkL`.
 pub(super) fn fourth(f: impl Fn(usize, usize, usize, usize) -> f64) -> Tensor4 {

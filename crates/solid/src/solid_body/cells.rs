@@ -13,7 +13,7 @@ use crate::stiffness::{Table, pressures, projects};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::small::{determinant, inverse};
-use signorini_mechanics::{BodyError, Contribution, Order};
+use signorini_mechanics::{BodyError, BodyState, Contribution, Order};
 
 /// Radii below this share of the size of the body are on the axis.
 const ON_AXIS: f64 = 1e-12;
@@ -52,8 +52,8 @@ impl Gradients {
 }
 
 impl<const D: usize> SolidBody<D> {
-    pub(super) fn integrated(&self, u: &[f64], order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
-        let of = |cell: usize| self.cell(cell, u, order).map_err(|e| self.refused(cell, e));
+    pub(super) fn integrated(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        let of = |cell: usize| self.cell(cell, state, order).map_err(|e| self.refused(cell, e));
         let cells = (0..self.body().mesh.cell_count()).into_par_iter();
         let found: Vec<Result<CellForces, BodyError>> = cells.map(of).collect();
         let mut energy = 0.0;
@@ -79,6 +79,12 @@ impl<const D: usize> SolidBody<D> {
             StrainError::Inverted { .. } => BodyError::Inverted { body, cell },
             StrainError::Compressed { .. } => BodyError::Material { body, cell, message: error.to_string() },
         }
+    }
+
+    /// The unknowns of a cell, as its basis has them.
+    pub(super) fn own(&self, cell: usize, u: &[f64]) -> DVector<f64> {
+        let (unknowns, signs) = self.unknowns_of(cell);
+        DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]))
     }
 
     /// Gradients at the points of a table.
@@ -123,6 +129,13 @@ impl<const D: usize> SolidBody<D> {
         if !projects(basis, &body.material, self.bodies.space) {
             return None;
         }
+        self.fit(cell, weights, to)
+    }
+
+    /// The best fit by polynomials of one degree less, discontinuous from cell to cell: from values at the points of a cell to
+    /// those at the points of a table.
+    pub(super) fn fit(&self, cell: usize, weights: &[f64], to: &Table) -> Option<DMatrix<f64>> {
+        let basis = self.body().dofs.basis(cell);
         let psi = pressures::<D>(basis, self.table(cell));
         let mut weighted = psi.clone();
         weighted.column_iter_mut().zip(weights).for_each(|(mut c, w)| c *= *w);
@@ -131,13 +144,13 @@ impl<const D: usize> SolidBody<D> {
     }
 
     /// The tangent of a cell in a state, functions in the order and sign of the basis.
-    pub(super) fn tangent_of(&self, cell: usize, u: &[f64]) -> Result<DMatrix<f64>, StrainError> {
-        Ok(self.cell(cell, u, Order::Second)?.tangent.unwrap_or_default())
+    pub(super) fn tangent_of(&self, cell: usize, state: &BodyState) -> Result<DMatrix<f64>, StrainError> {
+        Ok(self.cell(cell, state, Order::Second)?.tangent.unwrap_or_default())
     }
 
-    fn cell(&self, cell: usize, u: &[f64], order: Order) -> Result<CellForces, StrainError> {
-        let (unknowns, signs) = self.unknowns_of(cell);
-        let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
+    fn cell(&self, cell: usize, state: &BodyState, order: Order) -> Result<CellForces, StrainError> {
+        let unknowns = D * self.body().dofs.basis(cell).len();
+        let own = self.own(cell, &state.configuration);
         let at = self.gradients(cell, self.table(cell));
         let displacement = &at.rows * &own;
         let points = at.weights.len();
@@ -153,7 +166,7 @@ impl<const D: usize> SolidBody<D> {
                 continue;
             }
             law.check(&f)?;
-            responses.push(law.deviatoric(elastic, &f));
+            responses.push(law.deviatoric(elastic, &f, self.history.at(state, cell, q)));
             dilatations.push(law.dilatation(&f));
         }
         // Volumetric part: pressure at each point, and how it changes with the dilatation.
@@ -187,7 +200,7 @@ impl<const D: usize> SolidBody<D> {
         if order == Order::First {
             return Ok(CellForces { energy, forces, tangent: None });
         }
-        let mut turned = DMatrix::<f64>::zeros(count * points, unknowns.len());
+        let mut turned = DMatrix::<f64>::zeros(count * points, unknowns);
         for (q, response) in responses.iter().enumerate() {
             let tangent = DMatrix::from_fn(count, count, |r, c| {
                 at.weights[q] * response.tangent[(at.components[r], at.components[c])]
@@ -196,7 +209,7 @@ impl<const D: usize> SolidBody<D> {
         }
         let mut tangent = at.rows.tr_mul(&turned);
         if !dilatations.is_empty() {
-            let mut change = DMatrix::<f64>::zeros(points, unknowns.len());
+            let mut change = DMatrix::<f64>::zeros(points, unknowns);
             for (q, dilatation) in dilatations.iter().enumerate() {
                 let row = at.rows.rows(q * count, count).tr_mul(&at.reduced(&dilatation.stress));
                 change.row_mut(q).copy_from(&row.transpose());

@@ -29,18 +29,22 @@ impl Planner<'_> {
             ));
         }
         let material = match &key.material {
-            Material::LinearElastic(m) => self.hooke(&m.youngs_modulus, &m.poissons_ratio, StressLaw::LinearElastic)?,
+            Material::LinearElastic(m) => {
+                self.hooke(&m.youngs_modulus, &m.poissons_ratio, &StressLaw::LinearElastic)?
+            }
             Material::NeoHooke(m) => {
                 let volumetric = self.volumetric(m.volumetric.as_ref(), Volumetric::Quadratic)?;
-                self.hooke(&m.youngs_modulus, &m.poissons_ratio, StressLaw::NeoHooke(volumetric))?
+                self.hooke(&m.youngs_modulus, &m.poissons_ratio, &StressLaw::NeoHooke(volumetric))?
             }
             Material::SaintVenantKirchhoff(m) => {
-                self.hooke(&m.youngs_modulus, &m.poissons_ratio, StressLaw::SaintVenantKirchhoff)?
+                self.hooke(&m.youngs_modulus, &m.poissons_ratio, &StressLaw::SaintVenantKirchhoff)?
             }
             Material::MooneyRivlin(m) => self.mooney_rivlin(m)?,
             Material::Yeoh(m) => self.yeoh(m)?,
             Material::Ogden(m) => self.ogden(m)?,
             Material::ArrudaBoyce(m) => self.arruda_boyce(m)?,
+            Material::Orthotropic(m) => self.orthotropic(m, finite)?,
+            Material::ElasticPlastic(m) => self.elastic_plastic(m, finite)?,
         };
         if !finite && !material.law().is_small_strain() {
             return Err(problem.error(&key.material, "this material is for finite strain").help("strain = \"finite\""));
@@ -49,14 +53,12 @@ impl Planner<'_> {
     }
 
     /// A law with the constants of Hooke's, which may vary in space.
-    fn hooke(&self, modulus: &Value, ratio: &Value, law: StressLaw) -> Result<SolidMaterial, CaseError> {
+    fn hooke(&self, modulus: &Value, ratio: &Value, law: &StressLaw) -> Result<SolidMaterial, CaseError> {
+        let law = law.clone();
         let of_modulus = self.reader.expression(modulus, PRESSURE, self.places())?;
         let of_ratio = self.reader.expression(ratio, NONE, self.places())?;
         if of_modulus.constant().is_some() && of_ratio.constant().is_some() {
-            let youngs_modulus = self.reader.positive(modulus, PRESSURE)?;
-            let poissons_ratio = self.reader.number(ratio, NONE)?;
-            self.check_ratio(ratio, poissons_ratio)?;
-            return Ok((Elastic { youngs_modulus, poissons_ratio }, law).into());
+            return Ok((self.constants(modulus, ratio)?, law).into());
         }
         let at = |expression: &Expression, x: &Point<3>| {
             expression.evaluate(&Scope { position: [x[0], x[1], x[2]], time: 0.0 })
@@ -67,7 +69,7 @@ impl Planner<'_> {
         };
         // Typical constants are those of the points of the mesh, known later.
         let unknown = Elastic { youngs_modulus: f64::NAN, poissons_ratio: f64::NAN };
-        Ok(SolidMaterial::varying((unknown, law), Arc::new(move |x| (constants(x), law))))
+        Ok(SolidMaterial::varying((unknown, law.clone()), Arc::new(move |x| (constants(x), law.clone()))))
     }
 
     /// A material that varies with the largest of its constants at the points of a mesh, as typical ones.
@@ -111,13 +113,16 @@ impl Planner<'_> {
         Ok(material.with_typical(most))
     }
 
-    fn check_ratio(&self, key: &Value, ratio: f64) -> Result<(), CaseError> {
-        if ratio > -1.0 && ratio < 0.5 {
-            return Ok(());
+    /// Young's modulus and Poisson's ratio that are the same everywhere.
+    pub(super) fn constants(&self, modulus: &Value, ratio: &Value) -> Result<Elastic, CaseError> {
+        let youngs_modulus = self.reader.positive(modulus, PRESSURE)?;
+        let poissons_ratio = self.reader.number(ratio, NONE)?;
+        if poissons_ratio > -1.0 && poissons_ratio < 0.5 {
+            return Ok(Elastic { youngs_modulus, poissons_ratio });
         }
         Err(self
             .problem
-            .error(key, format!("Poisson's ratio is {ratio}"))
+            .error(ratio, format!("Poisson's ratio is {poissons_ratio}"))
             .help("give a value above -1 and below 0.5; 0.4999, for example, is nearly incompressible"))
     }
 }

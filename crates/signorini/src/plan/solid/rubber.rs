@@ -138,7 +138,7 @@ impl Planner<'_> {
 
     fn with_fibre(&self, key: &problem::Fibre, law: Rubber) -> Result<SolidMaterial, CaseError> {
         let problem = self.problem;
-        let [c3, c5] = [&key.c3, &key.c5].map(|value| self.not_negative(value));
+        let [c3, c5] = [&key.c3, &key.c5].map(|value| self.not_negative_stress(value));
         let stretch = self.reader.number(&key.stretch, NONE)?;
         if stretch <= 1.0 {
             let message = format!("fibres are straight at a stretch of {stretch}");
@@ -160,7 +160,7 @@ impl Planner<'_> {
         Ok(SolidMaterial::varying((typical.elastic(), StressLaw::Rubber(typical)), Arc::new(of)))
     }
 
-    fn not_negative(&self, value: &Value) -> Result<f64, CaseError> {
+    fn not_negative_stress(&self, value: &Value) -> Result<f64, CaseError> {
         let number = self.reader.number(value, PRESSURE)?;
         if number >= 0.0 {
             return Ok(number);

@@ -111,7 +111,7 @@ fn laws_agree_where_they_are_the_same() {
     ];
     for ((elastic, a), (_, b)) in pairs {
         for f in deformations() {
-            let [a, b] = [a, b].map(|law| law.response(&elastic, &f).unwrap());
+            let [a, b] = [&a, &b].map(|law| law.response(&elastic, &f).unwrap());
             assert!((a.energy - b.energy).abs() < 1e-13 && (a.stress - b.stress).norm() < 1e-13);
             assert!((a.tangent - b.tangent).norm() < 1e-12);
         }
@@ -171,7 +171,7 @@ fn fibres_carry_by_their_stretch() {
     let at = |l: f64| {
         let a = along.direction * along.direction.transpose();
         let f = a * l + (Matrix3::identity() - a) / l.sqrt();
-        let [with, without] = [law, bare].map(|law| law.response(&elastic, &f).unwrap());
+        let [with, without] = [&law, &bare].map(|law| law.response(&elastic, &f).unwrap());
         let stress = Matrix3::from_fn(|i, j| (with.stress - without.stress)[3 * i + j]) * f.transpose();
         let along_fibre = (along.direction.transpose() * stress * along.direction)[0];
         // Less the part that the volume takes, the Kirchhoff stress along fibres is 2/3 of λ F'.

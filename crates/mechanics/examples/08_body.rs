@@ -6,7 +6,7 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, Contact, ContactSides, Contribution,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, Contact, ContactSides, Contribution,
     Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError, PlacedLoad,
     RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
 };
@@ -126,7 +126,7 @@ impl Slack for SprungPoint {}
 
 impl BoxOfMaterial for SprungPoint {}
 
-impl Inelastic for SprungPoint {}
+impl Constitution for SprungPoint {}
 
 pub fn main() {
     // 1. A point on springs, at rest on a plane that is inclined.

@@ -166,7 +166,7 @@ pub struct BodyFields {
 
 /// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
 /// a body without it implements these as they are.
-pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Inelastic + Send + Sync {
+pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Send + Sync {
     fn name(&self) -> &str;
 
     /// Number of unknowns.
@@ -384,8 +384,13 @@ pub trait BoxOfMaterial {
     }
 }
 
-/// A body that does not give back all the work that was done on it.
-pub trait Inelastic {
+/// How the material of a body answers: elastic, unless a body says otherwise.
+pub trait Constitution {
+    /// The law of its stress, as it is called; none of bodies that have none by name.
+    fn law_name(&self) -> Option<String> {
+        None
+    }
+
     /// Whether the stress of the body depends on the states before.
     fn is_inelastic(&self) -> bool {
         false
@@ -401,6 +406,20 @@ pub trait Inelastic {
     fn dissipated(&self, _state: &BodyState) -> f64 {
         0.0
     }
+
+    /// Where the material itself is not stable in a state: none where it is everywhere.
+    fn unstable_material(&self, _state: &BodyState) -> Option<UnstableMaterial> {
+        None
+    }
+}
+
+/// A point of which the material softens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnstableMaterial {
+    /// Before the body deforms.
+    pub x: Point<3>,
+    /// Principal stretches, the largest first.
+    pub stretches: [f64; 3],
 }
 
 /// Named arrays of a body in equal boxes side by side, as an image has them, the first direction fastest.

@@ -3,6 +3,7 @@
 //! `equilibrium` solves the equations as they stand; where that fails `homotopy` looks for another way to the same state.
 //! About both run the outer iterations of `augmentation`.
 
+use crate::body::UnstableMaterial;
 use crate::enforcement::SOFTER;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
@@ -32,6 +33,8 @@ pub struct IncrementResult {
     pub dissipated: Vec<f64>,
     /// Energy that each body dissipated in the increment.
     pub dissipated_in_bodies: Vec<f64>,
+    /// Where the material of each body is not stable.
+    pub unstable_materials: Vec<Option<UnstableMaterial>>,
     pub unknowns: usize,
     /// Largest unbalanced force relative to the largest of all.
     pub imbalance: f64,
@@ -399,6 +402,7 @@ impl System {
         let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<Vec<_>, _>>()?;
         let dissipated = sites.iter().map(|list| list.iter().map(SiteResult::dissipated).sum()).collect();
         let dissipated_in_bodies = self.bodies.iter().zip(&state.bodies).map(|(b, s)| b.dissipated(s)).collect();
+        let unstable_materials = self.bodies.iter().zip(&state.bodies).map(|(b, s)| b.unstable_material(s)).collect();
         Ok(IncrementResult {
             iterations,
             history,
@@ -407,6 +411,7 @@ impl System {
             energy: at.energy,
             dissipated,
             dissipated_in_bodies,
+            unstable_materials,
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,

@@ -64,7 +64,7 @@ mod unstable;
 
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
-    Inelastic,
+    Constitution, UnstableMaterial,
     Kinematics, Load, Means, PlaceError, Samples, Slack,
 };
 pub use contact::{Contact, Pairing, SiteMemory};

@@ -5,7 +5,7 @@
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
 use crate::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution, Elimination, Hold,
     Kinematics, Load, PlaceError, Slack,
 };
 use crate::pair::{any_tangent, axis};
@@ -358,7 +358,7 @@ impl Slack for RigidBody {}
 
 impl BoxOfMaterial for RigidBody {}
 
-impl Inelastic for RigidBody {}
+impl Constitution for RigidBody {}
 
 struct RigidMaster<'a> {
     body: &'a RigidBody,

@@ -176,7 +176,7 @@ impl Slack for Sheet {}
 
 impl BoxOfMaterial for Sheet {}
 
-impl Inelastic for Sheet {}
+impl Constitution for Sheet {}
 
 struct SheetMaster<'a> {
     sheet: &'a Sheet,

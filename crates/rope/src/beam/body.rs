@@ -14,7 +14,7 @@ use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, ContactSides, Contribution, Elimination,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution, Elimination,
     Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
@@ -413,4 +413,4 @@ impl Slack for Beam {}
 
 impl BoxOfMaterial for Beam {}
 
-impl Inelastic for Beam {}
+impl Constitution for Beam {}

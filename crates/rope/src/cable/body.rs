@@ -15,7 +15,7 @@ use crate::quaternion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, ContactSides, Contribution, Elimination, Hold,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution, Elimination, Hold,
     Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
@@ -316,4 +316,4 @@ impl Slack for Cable {
 
 impl BoxOfMaterial for Cable {}
 
-impl Inelastic for Cable {}
+impl Constitution for Cable {}

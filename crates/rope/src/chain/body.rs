@@ -17,7 +17,7 @@ use crate::quaternion::axis;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Inelastic, Constraint, ContactSides, Contribution, Elimination,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution, Elimination,
     Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
@@ -507,4 +507,4 @@ impl Slack for Chain {
 
 impl BoxOfMaterial for Chain {}
 
-impl Inelastic for Chain {}
+impl Constitution for Chain {}

@@ -142,6 +142,16 @@ impl StressLaw {
         }
     }
 
+    /// Principal stretches of a deformation in which the material is not stable; none where it is, or nothing is known.
+    pub fn unstable(&self, elastic: &Elastic, space: Space, f: &Matrix3<f64>) -> Option<[f64; 3]> {
+        let StressLaw::Rubber(law) = self else { return None };
+        let mut f = *f;
+        if space == Space::PlaneStress {
+            f[(2, 2)] = self.stretch_across(elastic, &f);
+        }
+        law.unstable(&f)
+    }
+
     /// Whether a deformation gradient is one that the law covers.
     ///
     /// # Errors

@@ -4,11 +4,12 @@
 //! cut-back and a resumed run start from the same. Before the next increment they are renewed from the state that was reached.
 
 use super::SolidBody;
+use super::spatial::spatial;
 use crate::law::{Plastic, StressLaw};
 use crate::material::Elastic;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
-use signorini_mechanics::{BodyState, Inelastic};
+use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
 
 /// Where the history of each point stands in the internal numbers.
 #[derive(Clone, Default)]
@@ -63,13 +64,36 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
-impl<const D: usize> Inelastic for SolidBody<D> {
+impl<const D: usize> Constitution for SolidBody<D> {
+    fn law_name(&self) -> Option<String> {
+        Some(self.law().name())
+    }
+
     fn is_inelastic(&self) -> bool {
         self.law().has_history()
     }
 
     fn renewed(&self, state: &BodyState) -> Vec<f64> {
         self.all_plastic_points(state).into_iter().flatten().flat_map(|(_, point)| point.history).collect()
+    }
+
+    /// The first point of quadrature of an isotropic hyperelastic law that has lost its stability, cell by cell.
+    fn unstable_material(&self, state: &BodyState) -> Option<UnstableMaterial> {
+        if !matches!(self.law(), StressLaw::Rubber(_)) {
+            return None;
+        }
+        let of = |cell: usize| {
+            let table = self.table(cell);
+            let at = self.gradients(cell, table);
+            let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
+            (0..at.laws.len()).find_map(|q| {
+                let (elastic, law) = &at.laws[q];
+                let stretches = law.unstable(elastic, self.space(), &at.deformation(q, &displacement))?;
+                let x = spatial(&self.body().mesh.position(cell, &table.map[q]));
+                Some(UnstableMaterial { x, stretches })
+            })
+        };
+        (0..self.mesh().cell_count()).into_par_iter().find_map_first(of)
     }
 
     fn dissipated(&self, state: &BodyState) -> f64 {

@@ -38,9 +38,9 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution, Direction,
-    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack, SlavePoint,
-    Subspaces,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Direction, Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack,
+    SlavePoint, Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;

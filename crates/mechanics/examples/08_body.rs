@@ -6,9 +6,9 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, Contact, ContactSides, Contribution,
-    Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError, PlacedLoad,
-    RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, Contact, ContactSides,
+    Contribution, Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError,
+    PlacedLoad, RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
 };
 use std::sync::Arc;
 

@@ -77,7 +77,8 @@ impl Problem<'_> {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
-        let predicts = self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
+        let predicts =
+            self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
         let search = if self.goes_down {
             Search::Energy

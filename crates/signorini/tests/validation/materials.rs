@@ -46,8 +46,7 @@ const LAWS: [(&str, Isochoric, fn(f64) -> f64); 4] = [
         "arruda_boyce = { mu = 0.5, locking_stretch = 2, bulk_modulus = 20 }",
         |l| {
             const C: [f64; 5] = [0.5, 0.05, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
-            let slope =
-                |i: f64| (0..5).map(|k| 0.5 * C[k] * (k + 1) as f64 * (i / 4.0).powi(k as i32)).sum::<f64>();
+            let slope = |i: f64| (0..5).map(|k| 0.5 * C[k] * (k + 1) as f64 * (i / 4.0).powi(k as i32)).sum::<f64>();
             of_first(slope, l)
         },
         |j| BULK * (j - 1.0),
@@ -76,15 +75,21 @@ fn block(space: &str, material: &str, rest: &str) -> Value {
     let (shape, sides): (&str, &[(&str, &str)]) = match space {
         "3d" => (
             "min = [0, 0, 0], max = [1, 1, 1], cells = [2, 2, 1], map = [\"x + 0.3*x*(1-x)*y*(1-y)\", \"y\", \"z\"]",
-            &[("left", "[0, \"free\", \"free\"]"), ("front", "[\"free\", 0, \"free\"]"), ("bottom", "[\"free\", \"free\", 0]")],
+            &[
+                ("left", "[0, \"free\", \"free\"]"),
+                ("front", "[\"free\", 0, \"free\"]"),
+                ("bottom", "[\"free\", \"free\", 0]"),
+            ],
         ),
         _ => (
             "min = [0, 0], max = [1, 1], cells = [2, 2], map = [\"x\", \"y + 0.3*x*(1-x)*y*(1-y)\"]",
             &[("left", "[0, \"free\"]"), ("bottom", "[\"free\", 0]")],
         ),
     };
-    let supports: String =
-        sides.iter().map(|(side, u)| format!("[supports.{side}]\non = \"block:{side}\"\ndisplacement = {u}\n")).collect();
+    let supports: String = sides
+        .iter()
+        .map(|(side, u)| format!("[supports.{side}]\non = \"block:{side}\"\ndisplacement = {u}\n"))
+        .collect();
     let case = format!(
         "space = \"{space}\"\n[bodies.block.solid]\nmesh.box = {{ {shape} }}\nstrain = \"finite\"\nmaterial.{material}\n\
          {supports}{rest}[[steps]]\nto = 1\nincrements = 2\n"
@@ -183,13 +188,14 @@ fn tube(material: &str, degree: usize, cells: usize) -> f64 {
 fn nearly_incompressible_tubes_do_not_lock() {
     for ratio in [1e3, 1e5] {
         let material = format!("mooney_rivlin = {{ c10 = 0.3, c01 = 0.1, bulk_modulus = {} }}", 0.8 * ratio);
-        for (degree, meshes, least) in [(1, [8, 16], 1.8), (2, [4, 8], 3.3), (3, [2, 4], 4.0)] {
-            let errors = meshes.map(|n| tube(&material, degree, n));
-            let order = (errors[0] / errors[1]).abs().log2();
-            println!("K/mu {ratio:e} degree {degree}: {errors:?}, order {order:.2}");
-            assert!(errors[1].abs() < 5e-3, "degree {degree}, {ratio}: {errors:?}");
-            // Beyond what a finite bulk modulus changes.
-            assert!(order > least || errors[1].abs() < 3.0 / ratio, "degree {degree}, {ratio}: {errors:?} {order}");
+        // What a finite bulk modulus changes, from the finest functions.
+        let compressible = tube(&material, 3, 8);
+        assert!(compressible.abs() < 1.0 / ratio, "{ratio}: {compressible:e}");
+        for (degree, meshes, order) in [(1, [8, 16], 1.8), (2, [4, 8], 3.7), (3, [2, 4], 4.5)] {
+            let errors = meshes.map(|n| (tube(&material, degree, n) - compressible).abs());
+            let found = (errors[0] / errors[1]).log2();
+            println!("K/mu {ratio:e} degree {degree}: {errors:?}, order {found:.2}");
+            assert!(found > order && errors[1] < 1e-4, "degree {degree}, {ratio}: {errors:?}, order {found}");
         }
     }
 }
@@ -291,11 +297,11 @@ fn bars_of_varying_modulus_are_exact() {
 #[test]
 fn materials_that_are_none_are_told() {
     let soft = "mooney_rivlin = { c10 = 0.5, c01 = -0.1, bulk_modulus = 100 }";
-    let both = pulled("right", "[\"0.6*t\", \"free\"]") + &pulled("top", "[\"free\", \"0.6*t\"]");
+    let both = pulled("right", "[\"0.7*t\", \"free\"]") + &pulled("top", "[\"free\", \"0.7*t\"]");
     let found = block("plane_stress", soft, &both);
     let warnings = found["warnings"].as_array().expect("warnings");
     let told = warnings.iter().find(|w| w["kind"] == "unstable_material").expect("a warning of the material");
-    assert!(told["message"].as_str().is_some_and(|m| m.contains("1.6000, 1.6000")), "{told}");
+    assert!(told["message"].as_str().is_some_and(|m| m.contains("1.7000, 1.7000")), "{told}");
     let case = |space: &str, strain: &str, material: &str| {
         format!(
             "space = \"{space}\"\n[bodies.block.solid]\nmesh.box = {{ min = [0, 0], max = [1, 1], cells = [2, 2] }}\n\
@@ -304,7 +310,13 @@ fn materials_that_are_none_are_told() {
     };
     for (space, strain, material, key, words) in [
         ("plane_strain", "small", soft, "material", "finite strain"),
-        ("plane_strain", "finite", "mooney_rivlin = { c10 = -0.5, bulk_modulus = 1 }", "mooney_rivlin", "shear modulus"),
+        (
+            "plane_strain",
+            "finite",
+            "mooney_rivlin = { c10 = -0.5, bulk_modulus = 1 }",
+            "mooney_rivlin",
+            "shear modulus",
+        ),
         ("plane_strain", "finite", "yeoh = { c = [], bulk_modulus = 1 }", "yeoh.c", "1 to 3 constants"),
         ("plane_strain", "finite", "ogden = { mu = [1, 2], alpha = [2], bulk_modulus = 1 }", "ogden.alpha", "2 moduli"),
         ("plane_strain", "finite", "ogden = { mu = [1], alpha = [0], bulk_modulus = 1 }", "alpha", "exponent is 0"),
@@ -315,7 +327,13 @@ fn materials_that_are_none_are_told() {
             "locking_stretch",
             "0.5",
         ),
-        ("plane_strain", "finite", "yeoh = { c = [1], bulk_modulus = 1, volumetric = \"cubic\" }", "volumetric", "cubic"),
+        (
+            "plane_strain",
+            "finite",
+            "yeoh = { c = [1], bulk_modulus = 1, volumetric = \"cubic\" }",
+            "volumetric",
+            "cubic",
+        ),
         (
             "plane_strain",
             "small",

@@ -66,7 +66,7 @@ fn a_bar_goes_through_a_cycle() {
             let path = step["audit"].as_array().unwrap().iter().find(|f| f["check"] == "path").expect("a balance");
             assert_eq!(path["outcome"], "fine", "{path}");
         }
-        assert!(dissipated > 0.1);
+        assert!(dissipated > 0.05, "{dissipated}");
         assert_eq!(found["materials"]["bar"], "elastic-plastic");
     }
 }
@@ -153,7 +153,7 @@ fn a_dent_remains_and_a_resumed_run_gives_the_same_digits() {
     let case = r#"
 space = "plane_strain"
 [bodies.block.solid]
-mesh.box = { min = [0, 0], max = [4, 2], cells = [8, 4] }
+mesh.box = { min = [0, 0], max = [4, 2], cells = [16, 8] }
 material.elastic_plastic = { youngs_modulus = 1000, poissons_ratio = 0.3, yield_stress = 3, hardening = 20 }
 [bodies.roller.rigid]
 shape.cylinder = { point = [2, 4], radius = 2 }
@@ -180,6 +180,6 @@ increments = 8
     assert_eq!(json!([rest.steps, rest.warnings]), json!([whole.steps, whole.warnings]));
     let whole = json!(whole);
     let dent = at(last_step(&whole), "/probes/top/displacement/1");
-    assert!(dent < -0.02 && dent > -0.06, "{dent}");
+    assert!(dent < -0.05 && dent > -0.06, "{dent}");
     assert!(steps(&whole).iter().map(|s| s["plastic_dissipation"].as_f64().unwrap_or(0.0)).sum::<f64>() > 0.0);
 }

@@ -18,7 +18,9 @@ pub enum HardeningError {
     Start { strain: f64 },
     #[error("the plastic strain {strain} of row {row} is not larger than the one before")]
     Strain { row: usize, strain: f64 },
-    #[error("the yield stress {stress} of row {row} is smaller than the one before: softening has no solution that a mesh can find")]
+    #[error(
+        "the yield stress {stress} of row {row} is smaller than the one before: softening has no solution that a mesh can find"
+    )]
     Softening { row: usize, stress: f64 },
     #[error("the modulus {slope} is negative: softening has no solution that a mesh can find")]
     Slope { slope: f64 },

@@ -30,8 +30,7 @@ fn scaled(f: &Matrix3<f64>, n: f64, of: &Response) -> Response {
 
 /// `Ī1` and its derivatives.
 pub(super) fn first(f: &Matrix3<f64>) -> Response {
-    let plain =
-        Response { energy: f.norm_squared(), stress: flat(&(f * 2.0)), tangent: Tensor4::identity() * 2.0 };
+    let plain = Response { energy: f.norm_squared(), stress: flat(&(f * 2.0)), tangent: Tensor4::identity() * 2.0 };
     scaled(f, -2.0 / 3.0, &plain)
 }
 

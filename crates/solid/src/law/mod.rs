@@ -242,12 +242,7 @@ impl StressLaw {
     ///
     /// # Errors
     /// Deformations that the law does not cover.
-    pub fn response_from(
-        &self,
-        elastic: &Elastic,
-        f: &Matrix3<f64>,
-        history: &[f64],
-    ) -> Result<Response, StrainError> {
+    pub fn response_from(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> Result<Response, StrainError> {
         self.check(f)?;
         let (v, phi) = (self.deviatoric(elastic, f, history), self.dilatation(f));
         let [u, du, ddu] = self.volumetric(elastic, phi.energy)?;

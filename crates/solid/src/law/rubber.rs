@@ -70,7 +70,10 @@ impl Isochoric {
         // An orthonormal basis of what keeps the volume.
         let basis = [[1.0, -1.0, 0.0].map(|v| v / 2f64.sqrt()), [1.0, 1.0, -2.0].map(|v| v / 6f64.sqrt())];
         let within = Matrix2::from_fn(|i, j| {
-            (0..3).flat_map(|a| (0..3).map(move |b| (a, b))).map(|(a, b)| basis[i][a] * tangent(a, b) * basis[j][b]).sum::<f64>()
+            (0..3)
+                .flat_map(|a| (0..3).map(move |b| (a, b)))
+                .map(|(a, b)| basis[i][a] * tangent(a, b) * basis[j][b])
+                .sum::<f64>()
         });
         within.symmetric_eigenvalues().min()
     }

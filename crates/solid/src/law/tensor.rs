@@ -34,7 +34,6 @@ pub(super) fn flat(m: &Matrix3<f64>) -> Tensor {
     Tensor::from_fn(|k, _| m[(k / 3, k % 3)])
 }
 
-
 /// A fourth-order tensor by its components `iJkL`.
 pub(super) fn fourth(f: impl Fn(usize, usize, usize, usize) -> f64) -> Tensor4 {
     Tensor4::from_fn(|r, c| f(r / 3, r % 3, c / 3, c % 3))

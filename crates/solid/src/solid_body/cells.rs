@@ -28,7 +28,7 @@ struct CellForces {
 /// The gradient of the displacement at the points of a cell: the components that there are, point after point, for each
 /// unknown.
 pub(super) struct Gradients {
-    components: &'static [usize],
+    pub components: &'static [usize],
     pub rows: DMatrix<f64>,
     pub weights: Vec<f64>,
     /// Constants and law at each point.
@@ -46,7 +46,7 @@ impl Gradients {
         f
     }
 
-    fn reduced(&self, tensor: &Tensor) -> DVector<f64> {
+    pub fn reduced(&self, tensor: &Tensor) -> DVector<f64> {
         DVector::from_iterator(self.components.len(), self.components.iter().map(|c| tensor[*c]))
     }
 }

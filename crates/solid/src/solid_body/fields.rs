@@ -42,7 +42,8 @@ impl<const D: usize> SolidBody<D> {
         }
         let of = |cell: usize| &divisions[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
         let cells: Vec<usize> = (0..body.mesh.cell_count()).collect();
-        let found: Vec<Vec<Shown>> = cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, state)).collect();
+        let found: Vec<Vec<Shown>> =
+            cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, state)).collect();
         let mut out = BodyFields::default();
         let mut stress = Vec::new();
         let mut equivalent = Vec::new();
@@ -142,11 +143,7 @@ impl<const D: usize> SolidBody<D> {
     }
 
     fn volume_ratio(&self, (elastic, law): (&Elastic, &StressLaw), f: &Matrix3<f64>) -> f64 {
-        let across = if self.bodies.space == Space::PlaneStress {
-            law.stretch_across(elastic, f)
-        } else {
-            f[(2, 2)]
-        };
+        let across = if self.bodies.space == Space::PlaneStress { law.stretch_across(elastic, f) } else { f[(2, 2)] };
         let mut f = *f;
         f[(2, 2)] = across;
         f.determinant()
@@ -156,11 +153,11 @@ impl<const D: usize> SolidBody<D> {
         let inner = self.gradients(cell, self.table(cell));
         let project = self.projection(cell, &inner.weights, self.table(cell))?;
         let gradients = &inner.rows * own;
-        let phi = (0..inner.weights.len()).map(|q| inner.laws[q].1.dilatation(&inner.deformation(q, &gradients)).energy);
+        let phi =
+            (0..inner.weights.len()).map(|q| inner.laws[q].1.dilatation(&inner.deformation(q, &gradients)).energy);
         let theta = project * DVector::from_iterator(inner.weights.len(), phi);
-        let slope = |(t, (elastic, law)): (&f64, &(Elastic, StressLaw))| {
-            law.volumetric(elastic, *t).map_or(f64::NAN, |u| u[1])
-        };
+        let slope =
+            |(t, (elastic, law)): (&f64, &(Elastic, StressLaw))| law.volumetric(elastic, *t).map_or(f64::NAN, |u| u[1]);
         let slopes = DVector::from_iterator(inner.weights.len(), theta.iter().zip(&inner.laws).map(slope));
         self.projection(cell, &inner.weights, to).map(|p| p * slopes)
     }
@@ -172,7 +169,7 @@ impl<const D: usize> SolidBody<D> {
         Division { table: self.table_at(cell, &points), cells }
     }
 
-    fn table_at(&self, cell: usize, points: &[Local]) -> Table {
+    pub(super) fn table_at(&self, cell: usize, points: &[Local]) -> Table {
         let (map, basis) = (self.body().mesh.map(cell), self.body().dofs.basis(cell));
         let tabulate = |f: &dyn Fn(&Local, &mut Values)| -> Vec<Values> {
             (points.iter())

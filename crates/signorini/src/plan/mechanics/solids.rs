@@ -67,11 +67,10 @@ impl Planner<'_> {
             let group = Group { cells: Vec::new(), sides, vertices: vertices.into_iter().collect() };
             groups.insert(AXIS.to_string(), group);
         }
-        let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, material, space, groups)
-            .map_err(|e| match e {
-                SolidError::Material { .. } => self.problem.error(&key.material, e.to_string()),
-                _ => self.problem.error(&key.mesh, e.to_string()),
-            })?;
+        let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, material, space, groups).map_err(|e| match e {
+            SolidError::Material { .. } => self.problem.error(&key.material, e.to_string()),
+            _ => self.problem.error(&key.mesh, e.to_string()),
+        })?;
         let edges = self.edges(key)?;
         let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
         Ok(PlannedSolid { body: body.into_body(), on_axis, pieces })

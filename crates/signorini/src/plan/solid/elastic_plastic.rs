@@ -24,9 +24,7 @@ impl Planner<'_> {
             YieldStress::Table(rows) => rows
                 .iter()
                 .map(|row| match &row[..] {
-                    [stress, strain] => {
-                        Ok([self.reader.number(stress, PRESSURE)?, self.reader.number(strain, NONE)?])
-                    }
+                    [stress, strain] => Ok([self.reader.number(stress, PRESSURE)?, self.reader.number(strain, NONE)?]),
                     other => Err(problem
                         .error(row, format!("expected 2 numbers, found {}", other.len()))
                         .help("yield_stress = [[250, 0], [300, 0.05], [320, 0.2]]")),
@@ -41,7 +39,8 @@ impl Planner<'_> {
                 .help("give rows [stress, plastic strain] that begin at a plastic strain of 0 and rise"),
         })?;
         let kinematic = modulus(&key.kinematic_hardening)?;
-        if let Some(value) = key.kinematic_hardening.as_ref().filter(|_| kinematic < 0.0 || finite && kinematic != 0.0) {
+        if let Some(value) = key.kinematic_hardening.as_ref().filter(|_| kinematic < 0.0 || finite && kinematic != 0.0)
+        {
             let message = match kinematic < 0.0 {
                 true => format!("the modulus is {kinematic}: it must not be negative"),
                 false => "kinematic hardening is for small strain".to_string(),

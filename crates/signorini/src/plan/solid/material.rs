@@ -63,10 +63,8 @@ impl Planner<'_> {
         let at = |expression: &Expression, x: &Point<3>| {
             expression.evaluate(&Scope { position: [x[0], x[1], x[2]], time: 0.0 })
         };
-        let constants = move |x: &Point<3>| Elastic {
-            youngs_modulus: at(&of_modulus, x),
-            poissons_ratio: at(&of_ratio, x),
-        };
+        let constants =
+            move |x: &Point<3>| Elastic { youngs_modulus: at(&of_modulus, x), poissons_ratio: at(&of_ratio, x) };
         // Typical constants are those of the points of the mesh, known later.
         let unknown = Elastic { youngs_modulus: f64::NAN, poissons_ratio: f64::NAN };
         Ok(SolidMaterial::varying((unknown, law.clone()), Arc::new(move |x| (constants(x), law.clone()))))

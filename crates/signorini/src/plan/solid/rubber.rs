@@ -21,11 +21,8 @@ impl Planner<'_> {
     pub(super) fn mooney_rivlin(&self, key: &problem::MooneyRivlin) -> Result<SolidMaterial, CaseError> {
         let c01 = key.c01.as_ref().map_or(Ok(0.0), |c| self.reader.number(c, PRESSURE))?;
         let law = MooneyRivlin { c10: self.reader.number(&key.c10, PRESSURE)?, c01 };
-        let common = Common {
-            bulk_modulus: &key.bulk_modulus,
-            volumetric: key.volumetric.as_ref(),
-            fibre: key.fibre.as_ref(),
-        };
+        let common =
+            Common { bulk_modulus: &key.bulk_modulus, volumetric: key.volumetric.as_ref(), fibre: key.fibre.as_ref() };
         self.rubber(key, Isochoric::MooneyRivlin(law), &common)
     }
 
@@ -38,11 +35,8 @@ impl Planner<'_> {
         for (c, value) in c.iter_mut().zip(&key.c) {
             *c = self.reader.number(value, PRESSURE)?;
         }
-        let common = Common {
-            bulk_modulus: &key.bulk_modulus,
-            volumetric: key.volumetric.as_ref(),
-            fibre: key.fibre.as_ref(),
-        };
+        let common =
+            Common { bulk_modulus: &key.bulk_modulus, volumetric: key.volumetric.as_ref(), fibre: key.fibre.as_ref() };
         self.rubber(key, Isochoric::Yeoh(Yeoh(c)), &common)
     }
 
@@ -63,11 +57,8 @@ impl Planner<'_> {
         let law = Ogden::new(&terms).ok_or_else(|| {
             problem.error(&key.mu, format!("{} terms", terms.len())).help(format!("valid are 1 to {MOST_TERMS}"))
         })?;
-        let common = Common {
-            bulk_modulus: &key.bulk_modulus,
-            volumetric: key.volumetric.as_ref(),
-            fibre: key.fibre.as_ref(),
-        };
+        let common =
+            Common { bulk_modulus: &key.bulk_modulus, volumetric: key.volumetric.as_ref(), fibre: key.fibre.as_ref() };
         self.rubber(key, Isochoric::Ogden(law), &common)
     }
 
@@ -78,11 +69,8 @@ impl Planner<'_> {
             return Err(self.problem.error(&key.locking_stretch, message).help("give a stretch above 1"));
         }
         let law = ArrudaBoyce { mu: self.reader.positive(&key.mu, PRESSURE)?, locking_stretch };
-        let common = Common {
-            bulk_modulus: &key.bulk_modulus,
-            volumetric: key.volumetric.as_ref(),
-            fibre: key.fibre.as_ref(),
-        };
+        let common =
+            Common { bulk_modulus: &key.bulk_modulus, volumetric: key.volumetric.as_ref(), fibre: key.fibre.as_ref() };
         self.rubber(key, Isochoric::ArrudaBoyce(law), &common)
     }
 
@@ -116,11 +104,7 @@ impl Planner<'_> {
     }
 
     /// The energy of the change of volume by its word.
-    pub(super) fn volumetric(
-        &self,
-        word: Option<&String>,
-        otherwise: Volumetric,
-    ) -> Result<Volumetric, CaseError> {
+    pub(super) fn volumetric(&self, word: Option<&String>, otherwise: Volumetric) -> Result<Volumetric, CaseError> {
         match word.map(|word| (word, word.as_str())) {
             None => Ok(otherwise),
             Some((_, "linear")) if otherwise == Volumetric::Linear => Ok(Volumetric::Linear),

@@ -14,8 +14,8 @@ use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::{
-    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, UnstableMaterial,
-    rigid_body,
+    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
+    UnstableMaterial, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;

@@ -67,7 +67,13 @@ fn homogeneous_stretches_of_distorted_cells() {
 fn homogeneous_stretches_in_space_in_plane_stress_and_about_an_axis() {
     for (law, [stretch, lateral, stress]) in FREE {
         let mut system = System::default();
-        system.bodies.push(Box::new(solid("bar", cuboid([0.0; 3], [1.0; 3], [1, 1, 2], |x| x), 2, ELASTIC, law.clone())));
+        system.bodies.push(Box::new(solid(
+            "bar",
+            cuboid([0.0; 3], [1.0; 3], [1, 1, 2], |x| x),
+            2,
+            ELASTIC,
+            law.clone(),
+        )));
         system.supports.push(hold(0, "left", [Some(0.0), None, None]));
         system.supports.push(hold(0, "front", [None, Some(0.0), None]));
         system.supports.push(hold(0, "bottom", [None, None, Some(0.0)]));

@@ -51,7 +51,8 @@ fn check<const D: usize>(mesh: &Mesh<D>, degree: usize, space: Space, nu: f64) {
     for law in LAWS {
         let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: nu };
         let groups = mesh.groups().clone();
-        let body = SolidBody::new("body", Arc::new(mesh.clone()), degree, (elastic, law.clone()), space, groups).unwrap();
+        let body =
+            SolidBody::new("body", Arc::new(mesh.clone()), degree, (elastic, law.clone()), space, groups).unwrap();
         let n = body.unknowns();
         let seed = &mut 3u64;
         let u: Vec<f64> = (0..n).map(|_| 0.04 * noise(seed)).collect();

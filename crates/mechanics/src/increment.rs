@@ -211,7 +211,9 @@ impl System {
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
-                Some(Err(error)) if self.contacts.is_empty() || error == IncrementError::Interrupted => {
+                Some(Err(error))
+                    if self.contacts.is_empty() || self.follows_its_path() || error == IncrementError::Interrupted =>
+                {
                     return Err(error);
                 }
                 failed => {
@@ -256,7 +258,7 @@ impl System {
             }
         }
         let failed = match self.by(Strategy::Straight, start, time, solved, report) {
-            Err(error) if is_curable(&error) => error,
+            Err(error) if is_curable(&error) && !self.follows_its_path() => error,
             found => return found,
         };
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
@@ -279,6 +281,12 @@ impl System {
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
         self.by(Strategy::Round(failed), start, time, solved, report)
+    }
+
+    /// Whether the state depends on the way to it, by bodies that are held: an increment without a state is to be cut, since
+    /// another way leads to another state.
+    fn follows_its_path(&self) -> bool {
+        self.bodies.iter().any(|body| body.is_inelastic()) && !self.has_free_body()
     }
 
     /// What is done while the trials of contacts that can be softer are; told whether there are any.

@@ -20,7 +20,7 @@ use crate::report::{ForceBounds, Reason, StepReport};
 use frame::{Frame, take};
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_mechanics::{Body, IncrementError, IncrementResult, Saved, Stability, SystemState};
+use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -410,8 +410,8 @@ impl Model for MechanicsModel {
     }
 
     fn materials(&self) -> BTreeMap<String, String> {
-        let law = |body: &Box<dyn Body>| Some((body.name().to_string(), body.law_name()?));
-        self.plan.system.bodies.iter().filter_map(law).collect()
+        let bodies = self.plan.system.bodies.iter();
+        bodies.filter_map(|body| Some((body.name().to_string(), body.law_name()?))).collect()
     }
 
     fn method(&self) -> String {

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 #: Hash of the schema, by which the tests in Rust know it.
 SCHEMA = 'b1c4d9e74ca2b5a0'
+SCHEMA = 'fcd8929f7be5a391'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -25,7 +26,7 @@ CHOICES = {
     'Domain': {'disc': 'Disc', 'ellipse': 'Ellipse', 'rectangle': 'Rectangle', 'polygon': 'Polygon', 'implicit': 'Implicit', 'interval': 'Interval'},
     'Enforcement': {'multiplier': 'Multiplier', 'augmented_lagrangian': 'AugmentedLagrangian', 'nitsche': 'Nitsche', 'penalty': 'Penalty'},
     'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction'},
-    'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff'},
+    'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff', 'mooney_rivlin': 'MooneyRivlin', 'yeoh': 'Yeoh', 'ogden': 'Ogden', 'arruda_boyce': 'ArrudaBoyce', 'orthotropic': 'Orthotropic', 'elastic_plastic': 'ElasticPlastic'},
     'Mesh': {'grid': 'GridMesh', 'gmsh': 'DividedGmshMesh', 'arrays': 'MeshArrays'},
     'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discs': 'DiscMethod'},
     'Motion': {'fixed': 'Fixed', 'prescribed': 'Prescribed', 'free': 'FreeMotion'},
@@ -130,6 +131,38 @@ class AreaControl(Noun):
         self.to = to
 
 
+class ArrudaBoyce(Noun):
+    """Hyperelastic: Arruda-Boyce, with the five terms of its series in the invariant I1 without change of volume;
+    requires `strain = "finite"`.
+
+    mu: Modulus of the series, a force per area. The shear modulus at rest is `mu (1 + 3/(5 s^2) + 99/(175 s^4) +
+        513/(875 s^6) + 42039/(67375 s^8))` with the locking stretch `s`.
+    locking_stretch: Stretch at which the chains of molecules are straight, above 1.
+    bulk_modulus: Bulk modulus, a force per area: `2/D` in Abaqus.
+    fibre: Fibres along one direction.
+    volumetric: Energy of the change of volume: `linear`, `logarithmic` or `quadratic`, as of `mooney_rivlin`;
+        `linear` if left out.
+    """
+
+    _key = 'arruda_boyce'
+    _types = {'mu': ('mu', 'Value'), 'locking_stretch': ('locking_stretch', 'Value'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+
+    def __init__(
+        self,
+        *,
+        mu: Value,
+        locking_stretch: Value,
+        bulk_modulus: Value,
+        fibre: Optional[Fibre | Mapping[str, Any]] = None,
+        volumetric: Optional[str] = None,
+    ) -> None:
+        self.mu = mu
+        self.locking_stretch = locking_stretch
+        self.bulk_modulus = bulk_modulus
+        self.fibre = fibre
+        self.volumetric = volumetric
+
+
 class AugmentedLagrangian(Noun):
     """Penalties with updated multipliers. The contact conditions hold exactly."""
 
@@ -187,7 +220,7 @@ class Beam(Noun):
         section: CircleSection | RectangleSection | SectionStiffness | Mapping[str, Any] | str,
         cells: Optional[int] = None,
         contact_points: Optional[int] = None,
-        material: Optional[LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str] = None,
+        material: Optional[LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str] = None,
         model: Optional[str] = None,
         orientation: Optional[Sequence[Value] | Array] = None,
         radius: Optional[Value] = None,
@@ -316,7 +349,7 @@ class Cells(Noun):
         *,
         geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         mesh: CellsMesh | Mapping[str, Any],
-        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         alpha: Optional[Value] = None,
         degree: Optional[int] = None,
         functions: Optional[str] = None,
@@ -682,6 +715,39 @@ class DividedGmshMesh(Noun):
         self.translate = translate
 
 
+class ElasticPlastic(Noun):
+    """Isotropic, elastic-plastic: von Mises with isotropic and kinematic hardening; with `strain = "finite"` in
+    logarithmic strains. Not in plane stress.
+
+    youngs_modulus: Young's modulus, a force per area.
+    poissons_ratio: Poisson's ratio, above -1 and below 0.5.
+    yield_stress: Yield stress, a force per area, or a table `[[stress, plastic strain], …]` from a plastic strain
+        of 0 on. With `strain = "finite"` true stress and logarithmic plastic strain.
+    hardening: Modulus of linear isotropic hardening: yield stress per plastic strain, a force per area, beyond
+        the last row of a table; 0 if left out.
+    kinematic_hardening: Modulus of linear kinematic hardening (Prager): uniaxial stress per plastic strain, a
+        force per area; 0 if left out. At small strain only.
+    """
+
+    _key = 'elastic_plastic'
+    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value'), 'yield_stress': ('yield_stress', 'Value|[[Value]]'), 'hardening': ('hardening', 'Value'), 'kinematic_hardening': ('kinematic_hardening', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        youngs_modulus: Value,
+        poissons_ratio: Value,
+        yield_stress: Value | Sequence[Sequence[Value] | Array] | Array,
+        hardening: Optional[Value] = None,
+        kinematic_hardening: Optional[Value] = None,
+    ) -> None:
+        self.youngs_modulus = youngs_modulus
+        self.poissons_ratio = poissons_ratio
+        self.yield_stress = yield_stress
+        self.hardening = hardening
+        self.kinematic_hardening = kinematic_hardening
+
+
 class Ellipse(Noun):
     """An ellipse along the axes.
 
@@ -748,6 +814,20 @@ class ExponentialCompliance(Noun):
 
     _key = 'exponential'
     _types = {'pressure': ('pressure', 'Value'), 'length': ('length', 'Value')}
+class Fibre(Noun):
+    """Fibres along one direction, which carry in tension only (Weiss, Maker and Govindjee 1996; FEBio's transversely
+    isotropic Mooney-Rivlin): the stress times the stretch is `c3 (exp(c4 (l - 1)) - 1)` between the stretches 1
+    and `stretch`, and linear beyond.
+
+    direction: Direction before the body deforms, of any length: expressions of x, y and z.
+    c3: Scale of the stress of curled fibres, a force per area.
+    c4: Exponent of the stress of curled fibres.
+    c5: Modulus of straight fibres, a force per area.
+    stretch: Stretch at which fibres are straight, above 1.
+    """
+
+    _key = None
+    _types = {'direction': ('direction', '[Value]'), 'c3': ('c3', 'Value'), 'c4': ('c4', 'Value'), 'c5': ('c5', 'Value'), 'stretch': ('stretch', 'Value')}
 
     def __init__(
         self,
@@ -757,6 +837,17 @@ class ExponentialCompliance(Noun):
     ) -> None:
         self.pressure = pressure
         self.length = length
+        direction: Sequence[Value] | Array,
+        c3: Value,
+        c4: Value,
+        c5: Value,
+        stretch: Value,
+    ) -> None:
+        self.direction = direction
+        self.c3 = c3
+        self.c4 = c4
+        self.c5 = c5
+        self.stretch = stretch
 
 
 class Fit(Noun):
@@ -1333,6 +1424,37 @@ class MeshAxis(Noun):
         self.growth = growth
 
 
+class MooneyRivlin(Noun):
+    """Hyperelastic: Mooney-Rivlin, `c10 (I1 - 3) + c01 (I2 - 3)` of the invariants without change of volume;
+    requires `strain = "finite"`.
+
+    c10: Constant of the first invariant, a force per area. The shear modulus at rest is `2 (c10 + c01)`.
+    bulk_modulus: Bulk modulus, a force per area: `2/D1` in Abaqus.
+    c01: Constant of the second invariant, a force per area; 0 if left out.
+    fibre: Fibres along one direction.
+    volumetric: Energy of the change of volume with the bulk modulus `K`: `linear`, `K/2 (J - 1)^2` (Abaqus),
+        `logarithmic`, `K/2 ln(J)^2` (FEBio), or `quadratic`, `K/4 (J^2 - 1 - 2 ln J)`; `linear` if left out.
+    """
+
+    _key = 'mooney_rivlin'
+    _types = {'c10': ('c10', 'Value'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'c01': ('c01', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+
+    def __init__(
+        self,
+        *,
+        c10: Value,
+        bulk_modulus: Value,
+        c01: Optional[Value] = None,
+        fibre: Optional[Fibre | Mapping[str, Any]] = None,
+        volumetric: Optional[str] = None,
+    ) -> None:
+        self.c10 = c10
+        self.bulk_modulus = bulk_modulus
+        self.c01 = c01
+        self.fibre = fibre
+        self.volumetric = volumetric
+
+
 class Mortar(Noun):
     """Between solids, or of a solid with a rigid body: mortar with dual multipliers, integrated over exact segments.
 
@@ -1387,21 +1509,25 @@ class NearRefine(Noun):
 class NeoHooke(Noun):
     """Isotropic, hyperelastic: neo-Hookean; requires `strain = "finite"`.
 
-    youngs_modulus: Young's modulus, a force per area.
-    poissons_ratio: Poisson's ratio, above -1 and below 0.5.
+    youngs_modulus: Young's modulus at rest, a force per area.
+    poissons_ratio: Poisson's ratio at rest, above -1 and below 0.5.
+    volumetric: Energy of the change of volume, with Lamé's constant `lambda`: `quadratic`, `lambda/4 (J^2 - 1 - 2
+        ln J)`, or `logarithmic`, `lambda/2 ln(J)^2`; `quadratic` if left out.
     """
 
     _key = 'neo_hooke'
-    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value')}
+    _types = {'youngs_modulus': ('youngs_modulus', 'Value'), 'poissons_ratio': ('poissons_ratio', 'Value'), 'volumetric': ('volumetric', 'str')}
 
     def __init__(
         self,
         *,
         youngs_modulus: Value,
         poissons_ratio: Value,
+        volumetric: Optional[str] = None,
     ) -> None:
         self.youngs_modulus = youngs_modulus
         self.poissons_ratio = poissons_ratio
+        self.volumetric = volumetric
 
 
 class Nitsche(Noun):
@@ -1480,6 +1606,38 @@ class OffsetGeometry(Noun):
         self.distance = distance
 
 
+class Ogden(Noun):
+    """Hyperelastic: Ogden, the sum of `2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3)` of the principal stretches
+    without change of volume; requires `strain = "finite"`.
+
+    mu: Moduli of up to six terms, forces per area, as in Abaqus; half the `c` of FEBio. Their sum is the shear
+        modulus at rest.
+    alpha: Exponents of the terms, not 0.
+    bulk_modulus: Bulk modulus, a force per area: `2/D1` in Abaqus.
+    fibre: Fibres along one direction.
+    volumetric: Energy of the change of volume: `linear`, `logarithmic` or `quadratic`, as of `mooney_rivlin`;
+        `linear` if left out.
+    """
+
+    _key = 'ogden'
+    _types = {'mu': ('mu', '[Value]'), 'alpha': ('alpha', '[Value]'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+
+    def __init__(
+        self,
+        *,
+        mu: Sequence[Value] | Array,
+        alpha: Sequence[Value] | Array,
+        bulk_modulus: Value,
+        fibre: Optional[Fibre | Mapping[str, Any]] = None,
+        volumetric: Optional[str] = None,
+    ) -> None:
+        self.mu = mu
+        self.alpha = alpha
+        self.bulk_modulus = bulk_modulus
+        self.fibre = fibre
+        self.volumetric = volumetric
+
+
 class OnBody(Noun):
     """A point attached to a body.
 
@@ -1498,6 +1656,35 @@ class OnBody(Noun):
     ) -> None:
         self.body = body
         self.point = point
+
+
+class Orthotropic(Noun):
+    """Linear elastic with three perpendicular planes of symmetry; with `strain = "finite"` linear in the Green-
+    Lagrange strain.
+
+    youngs_moduli: `E1`, `E2`, `E3` along the axes of the material, forces per area.
+    poissons_ratios: `v12`, `v13`, `v23`: `vij` is the contraction along axis j per stretch along axis i by a
+        stress along axis i.
+    shear_moduli: `G12`, `G13`, `G23`, forces per area.
+    axes: The first two axes of the material, perpendicular and of any length, such as `[[1, 0, 0], [0, 1, 0]]`;
+        the third is perpendicular to both. The axes of the case if left out. In the plane one axis is along z.
+    """
+
+    _key = 'orthotropic'
+    _types = {'youngs_moduli': ('youngs_moduli', '[Value]'), 'poissons_ratios': ('poissons_ratios', '[Value]'), 'shear_moduli': ('shear_moduli', '[Value]'), 'axes': ('axes', '[[Value]]')}
+
+    def __init__(
+        self,
+        *,
+        youngs_moduli: Sequence[Value] | Array,
+        poissons_ratios: Sequence[Value] | Array,
+        shear_moduli: Sequence[Value] | Array,
+        axes: Optional[Sequence[Sequence[Value] | Array] | Array] = None,
+    ) -> None:
+        self.youngs_moduli = youngs_moduli
+        self.poissons_ratios = poissons_ratios
+        self.shear_moduli = shear_moduli
+        self.axes = axes
 
 
 class Output(Noun):
@@ -2031,7 +2218,7 @@ class Solid(Noun):
         self,
         *,
         mesh: BoxMesh | GmshMesh | MeshArrays | Mapping[str, Any] | str,
-        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         degree: Optional[int] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
         strain: Optional[str] = None,
@@ -2476,6 +2663,34 @@ class WindingStart(Noun):
         self.theta = theta
 
 
+class Yeoh(Noun):
+    """Hyperelastic: Yeoh, `c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3` of the invariant without change of
+    volume; requires `strain = "finite"`.
+
+    c: `c10`, `c20` and `c30`, forces per area; those left out are 0. The shear modulus at rest is `2 c10`.
+    bulk_modulus: Bulk modulus, a force per area: `2/D1` in Abaqus.
+    fibre: Fibres along one direction.
+    volumetric: Energy of the change of volume: `linear`, `logarithmic` or `quadratic`, as of `mooney_rivlin`;
+        `linear` if left out.
+    """
+
+    _key = 'yeoh'
+    _types = {'c': ('c', '[Value]'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+
+    def __init__(
+        self,
+        *,
+        c: Sequence[Value] | Array,
+        bulk_modulus: Value,
+        fibre: Optional[Fibre | Mapping[str, Any]] = None,
+        volumetric: Optional[str] = None,
+    ) -> None:
+        self.c = c
+        self.bulk_modulus = bulk_modulus
+        self.fibre = fibre
+        self.volumetric = volumetric
+
+
 class ProblemKeys(Noun):
     """A problem.
 
@@ -2551,3 +2766,4 @@ class ProblemKeys(Noun):
 
 
 __all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

@@ -37,6 +37,11 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
             out.push(finding.on(&contact.name).remedy("use smaller increments"));
         }
     }
+    let plastic = now.dissipated_in_bodies;
+    if plastic < -rounding {
+        let message = format!("the dissipation of plastic strain is negative: {plastic:.3e}");
+        out.push(Finding::new(Check::Path, Outcome::Refused, message).measured(-plastic, rounding));
+    }
     out.extend(of_increment(setting, before, now));
     out
 }
@@ -66,7 +71,7 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         return None;
     }
     let [taken, uncertain] = by_surfaces(setting, before, now)?;
-    let dissipated = now.dissipated.iter().flatten().sum::<f64>() + taken;
+    let dissipated = now.dissipated.iter().flatten().sum::<f64>() + taken + now.dissipated_in_bodies;
     let (mut work, mut off, mut size) = (0.0, 0.0, 0.0);
     let mut add = |[w, o]: [f64; 2]| {
         work += w;

@@ -201,6 +201,8 @@ pub struct State {
     pub stored: Option<f64>,
     /// Energy that friction took in the increment, as told, of each contact.
     pub dissipated: Vec<Option<f64>>,
+    /// Energy that bodies took in the increment by plastic strain, as told.
+    pub dissipated_in_bodies: f64,
 }
 
 /// Where a body is.

@@ -90,6 +90,7 @@ fn disc() -> Case {
         forces: vec![acting(0, v(0.0, -1.0, 0.0), Some(Vector::<3>::zeros()), 0.0)],
         stored: Some(0.0),
         dissipated: vec![Some(0.0)],
+        dissipated_in_bodies: 0.0,
     };
     Case { setting, before: State { time: 1.0, ..now.clone() }, now, stability: Stability::NotTested }
 }
@@ -135,6 +136,7 @@ fn block() -> Case {
         forces: vec![acting(0, v(0.0, -1.0, 0.0), None, 0.0), acting(0, v(MU, 0.0, 0.0), None, MU * way)],
         stored: Some(0.0),
         dissipated: vec![Some(MU * way)],
+        dissipated_in_bodies: 0.0,
     };
     let (before, now) = (state(0.0, 1.0), state(way, 2.0));
     let body = Body { name: "block".into(), form: Form::Solid(solid.clone()), rounding: 0.0 };
@@ -202,6 +204,7 @@ fn rope() -> Case {
         ],
         stored: Some(0.0),
         dissipated: vec![Some(dissipated)],
+        dissipated_in_bodies: 0.0,
     };
     let drum = Cylinder { point: Point::<3>::zeros(), axis: Vector::<3>::z(), radius: 1.0 };
     let setting = Setting {

@@ -38,9 +38,9 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Direction,
-    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack, SlavePoint,
-    Subspaces,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Direction, Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack,
+    SlavePoint, Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -448,6 +448,8 @@ impl<const D: usize> ContactSides for CellSolid<D> {
 }
 
 impl<const D: usize> Slack for CellSolid<D> {}
+
+impl<const D: usize> Constitution for CellSolid<D> {}
 
 impl<const D: usize> BoxOfMaterial for CellSolid<D> {
     fn samples(&self, state: &BodyState) -> Option<Samples> {

@@ -6,9 +6,9 @@ use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, Contact, ContactSides, Contribution,
-    Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError, PlacedLoad,
-    RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, Contact, ContactSides,
+    Contribution, Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError,
+    PlacedLoad, RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
 };
 use std::sync::Arc;
 
@@ -125,6 +125,8 @@ impl ContactSides for SprungPoint {}
 impl Slack for SprungPoint {}
 
 impl BoxOfMaterial for SprungPoint {}
+
+impl Constitution for SprungPoint {}
 
 pub fn main() {
     // 1. A point on springs, at rest on a plane that is inclined.

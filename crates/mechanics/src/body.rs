@@ -166,7 +166,7 @@ pub struct BodyFields {
 
 /// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
 /// a body without it implements these as they are.
-pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Send + Sync {
+pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Send + Sync {
     fn name(&self) -> &str;
 
     /// Number of unknowns.
@@ -382,6 +382,44 @@ pub trait BoxOfMaterial {
     fn means(&self, _state: &BodyState) -> Option<Means> {
         None
     }
+}
+
+/// How the material of a body answers: elastic, unless a body says otherwise.
+pub trait Constitution {
+    /// The law of its stress, as it is called; none of bodies that have none by name.
+    fn law_name(&self) -> Option<String> {
+        None
+    }
+
+    /// Whether the stress of the body depends on the states before.
+    fn is_inelastic(&self) -> bool {
+        false
+    }
+
+    /// The internal numbers with which an increment starts from a state that was reached: those of the state itself of bodies
+    /// without history.
+    fn renewed(&self, state: &BodyState) -> Vec<f64> {
+        state.internal.clone()
+    }
+
+    /// Energy that the body dissipated between the start of the increment and a state.
+    fn dissipated(&self, _state: &BodyState) -> f64 {
+        0.0
+    }
+
+    /// Where the material itself is not stable in a state: none where it is everywhere.
+    fn unstable_material(&self, _state: &BodyState) -> Option<UnstableMaterial> {
+        None
+    }
+}
+
+/// A point of which the material softens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnstableMaterial {
+    /// Before the body deforms.
+    pub x: Point<3>,
+    /// Principal stretches, the largest first.
+    pub stretches: [f64; 3],
 }
 
 /// Named arrays of a body in equal boxes side by side, as an image has them, the first direction fastest.

@@ -105,7 +105,7 @@ impl Contact {
         let stiffness = if enforcement.takes_stress() {
             if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
                 let message =
-                    "Nitsche's method is for surfaces of finite cells and of solids of small strain".to_string();
+                    "Nitsche's method is for surfaces of finite cells and of linear elastic solids".to_string();
                 return Err(PlaceError::Unsuitable { body: slave.1.name().to_string(), message });
             }
             sites

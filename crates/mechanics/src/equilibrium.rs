@@ -80,7 +80,8 @@ impl Problem<'_> {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
-        let predicts = start.bodies.iter().any(|b| !b.internal.is_empty());
+        let predicts =
+            self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
         // At finite strain a step that turns material stretches it, and what is nearly incompressible takes that for a change of
         // its volume: the step after it corrects that.
         let bends = self.system.bodies.iter().any(|b| !b.is_rigid() && !b.is_linear());

@@ -3,6 +3,7 @@
 //! `equilibrium` solves the equations as they stand; where that fails `homotopy` looks for another way to the same state.
 //! About both run the outer iterations of `augmentation`.
 
+use crate::body::UnstableMaterial;
 use crate::enforcement::SOFTER;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
@@ -30,6 +31,10 @@ pub struct IncrementResult {
     pub energy: f64,
     /// Energy that the friction of each contact took in the increment.
     pub dissipated: Vec<f64>,
+    /// Energy that each body dissipated in the increment.
+    pub dissipated_in_bodies: Vec<f64>,
+    /// Where the material of each body is not stable.
+    pub unstable_materials: Vec<Option<UnstableMaterial>>,
     pub unknowns: usize,
     /// Largest unbalanced force relative to the largest of all.
     pub imbalance: f64,
@@ -145,6 +150,9 @@ impl System {
         let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
         for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
+            if body.is_inelastic() {
+                state.internal = body.renewed(state);
+            }
             body.prescribe(time, state);
         }
         if let Some((k, share)) = self.first_passage(from, &start)? {
@@ -203,7 +211,9 @@ impl System {
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
-                Some(Err(error)) if self.contacts.is_empty() || error == IncrementError::Interrupted => {
+                Some(Err(error))
+                    if self.contacts.is_empty() || self.follows_its_path() || error == IncrementError::Interrupted =>
+                {
                     return Err(error);
                 }
                 failed => {
@@ -248,7 +258,7 @@ impl System {
             }
         }
         let failed = match self.by(Strategy::Straight, start, time, solved, report) {
-            Err(error) if is_curable(&error) => error,
+            Err(error) if is_curable(&error) && !self.follows_its_path() => error,
             found => return found,
         };
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
@@ -271,6 +281,12 @@ impl System {
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
         self.by(Strategy::Round(failed), start, time, solved, report)
+    }
+
+    /// Whether the state depends on the way to it, by bodies that are held: an increment without a state is to be cut, since
+    /// another way leads to another state.
+    fn follows_its_path(&self) -> bool {
+        self.bodies.iter().any(|body| body.is_inelastic()) && !self.has_free_body()
     }
 
     /// What is done while the trials of contacts that can be softer are; told whether there are any.
@@ -393,6 +409,8 @@ impl System {
         let imbalance = residual[..count].iter().fold(0.0f64, |m, r| m.max(r.abs())) / most;
         let sites = (0..self.contacts.len()).map(|k| self.sites(k, state)).collect::<Result<Vec<_>, _>>()?;
         let dissipated = sites.iter().map(|list| list.iter().map(SiteResult::dissipated).sum()).collect();
+        let dissipated_in_bodies = self.bodies.iter().zip(&state.bodies).map(|(b, s)| b.dissipated(s)).collect();
+        let unstable_materials = self.bodies.iter().zip(&state.bodies).map(|(b, s)| b.unstable_material(s)).collect();
         Ok(IncrementResult {
             iterations,
             history,
@@ -400,6 +418,8 @@ impl System {
             support_forces,
             energy: at.energy,
             dissipated,
+            dissipated_in_bodies,
+            unstable_materials,
             unknowns: at.residual.len(),
             imbalance,
             lost_sites: at.lost,

@@ -63,8 +63,8 @@ pub mod system;
 mod unstable;
 
 pub use body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
-    Kinematics, Load, Means, PlaceError, Samples, Slack,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Elimination, Hold, Kinematics, Load, Means, PlaceError, Samples, Slack, UnstableMaterial,
 };
 pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;

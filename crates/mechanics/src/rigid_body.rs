@@ -5,8 +5,8 @@
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
 use crate::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
-    Kinematics, Load, PlaceError, Slack,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Elimination, Hold, Kinematics, Load, PlaceError, Slack,
 };
 use crate::pair::{any_tangent, axis};
 use crate::points::{
@@ -357,6 +357,8 @@ impl ContactSides for RigidBody {}
 impl Slack for RigidBody {}
 
 impl BoxOfMaterial for RigidBody {}
+
+impl Constitution for RigidBody {}
 
 struct RigidMaster<'a> {
     body: &'a RigidBody,

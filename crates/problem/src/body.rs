@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A body.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[allow(clippy::large_enum_variant, reason = "a problem has few bodies, and their parts are found by their addresses")]
 pub enum Body {
     /// An elastic membrane under tension, or a string.
     Membrane(Membrane),

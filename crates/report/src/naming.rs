@@ -42,6 +42,7 @@ pub fn named(name: &str, units: Option<&UnitNames>, carries: TractionKind) -> Op
     let carried = || units.map_or(String::new(), |u| carries.units(u)[1].to_string());
     let (label, unit) = match name {
         "von_mises" => ("Equivalent stress (von Mises)", unit(|u| &u.pressure)),
+        "plastic_strain" => ("Equivalent plastic strain", String::new()),
         "contact_pressure" => match carries {
             TractionKind::Pressure => ("Contact pressure", carried()),
             TractionKind::LineLoad => ("Contact force per length", carried()),
@@ -80,8 +81,9 @@ pub fn sentence(key: &str) -> String {
 }
 
 /// Fields that a reader wants to see first, the most wanted first.
-pub const WANTED: [&str; 9] = [
+pub const WANTED: [&str; 10] = [
     "von_mises",
+    "plastic_strain",
     "contact_pressure",
     "utilisation",
     "friction_utilisation",

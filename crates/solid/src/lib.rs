@@ -3,16 +3,18 @@
 //! - [`material`]: linear elasticity in the plane, around an axis and in space.
 //! - [`body`]: bodies and the parts of their boundary.
 //! - [`stiffness`]: cells, and how they avoid locking.
-//! - [`hyperelastic`]: laws at finite strain.
+//! - [`law`]: how stress follows from strain.
 //! - [`solid_body`]: a solid as one of many bodies of any kind.
 
 pub mod body;
-pub mod hyperelastic;
+pub mod law;
 pub use signorini_fem::elastic as material;
 pub mod solid_body;
+pub mod solid_material;
 pub mod stiffness;
 
 pub use body::{Bodies, Body, BodySurface};
-pub use hyperelastic::{StrainError, StressLaw, Volumetric};
+pub use law::{StrainError, StressLaw, Volumetric};
 pub use material::{Elastic, Space, von_mises};
 pub use solid_body::{EdgeError, EdgeOf, SolidBody, SolidError};
+pub use solid_material::SolidMaterial;

@@ -1,7 +1,7 @@
 //! Finite-element solids as bodies of a system: unknowns `D f + i` for the hierarchic function `f` in direction `i`.
 //!
-//! At small strain the stiffness is that of [`stiffness`](crate::stiffness), added up once; at finite strain forces and
-//! tangent are integrated from a [`StressLaw`], with the same projection of the dilatation where low degrees or a material
+//! The stiffness of linear elasticity is that of [`stiffness`](crate::stiffness), added up once; for all other laws forces and
+//! tangent are integrated from a [`StressLaw`](crate::StressLaw), with the same projection of the dilatation where low degrees or a material
 //! that hardly compresses would lock. Contact is tested and met where the body is now, also at small strain.
 
 mod border;
@@ -10,6 +10,7 @@ mod edge;
 mod edges;
 mod faces;
 mod fields;
+mod history;
 mod hold;
 mod loads;
 mod master;
@@ -22,11 +23,13 @@ mod traction;
 pub use edge::{EdgeError, EdgeOf};
 
 use crate::body::Bodies;
-use crate::hyperelastic::StressLaw;
-use crate::material::{Elastic, Space};
+use crate::law::{StrainError, StressLaw};
+use crate::material::Space;
+use crate::solid_material::SolidMaterial;
 use crate::stiffness::{Table, stiffness};
 use edge::EdgeCurve;
 use faces::Faces;
+use history::History;
 use rayon::prelude::*;
 use signorini_fem::{DofMap, Group, Mesh, MeshError};
 use signorini_geometry::Point;
@@ -45,6 +48,8 @@ use std::sync::Arc;
 pub enum SolidError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Strain(#[from] StrainError),
     #[error("degree {degree} on a {shape}: valid are 1 to {most}")]
     Degree { degree: usize, shape: &'static str, most: usize },
     #[error("Young's modulus {youngs_modulus} and Poisson's ratio {poissons_ratio}: valid are > 0, and > -1 and < 0.5")]
@@ -57,18 +62,19 @@ pub enum SolidError {
 pub struct SolidBody<const D: usize> {
     /// The body by itself, as the linear model knows it.
     bodies: Bodies<D>,
-    law: StressLaw,
+    material: SolidMaterial,
     groups: BTreeMap<String, Group>,
     faces: Faces<D>,
     /// Edges that may touch as curves.
     edges: BTreeMap<String, EdgeCurve>,
     /// Quadrature tables by the kinds of map and basis of a cell.
     tables: HashMap<(usize, usize), Table>,
-    /// Unknowns and stiffness of each cell, at small strain.
+    /// Unknowns and stiffness of each cell, of linear laws.
     stiffness: Vec<(Vec<u32>, Vec<f64>)>,
     /// Coefficients of the reference position.
     position: Vec<Point<D>>,
     size: f64,
+    history: History,
 }
 
 impl<const D: usize> SolidBody<D> {
@@ -82,10 +88,12 @@ impl<const D: usize> SolidBody<D> {
         name: &str,
         mesh: Arc<Mesh<D>>,
         degree: usize,
-        (elastic, law): (Elastic, StressLaw),
+        material: impl Into<SolidMaterial>,
         space: Space,
         groups: BTreeMap<String, Group>,
     ) -> Result<Self, SolidError> {
+        let material = material.into();
+        let elastic = *material.elastic();
         mesh.check()?;
         let (e, nu) = (elastic.youngs_modulus, elastic.poissons_ratio);
         if !(e > 0.0 && e.is_finite() && nu > -1.0 && nu < 0.5) {
@@ -114,6 +122,7 @@ impl<const D: usize> SolidBody<D> {
                 .entry((body.mesh.map_number(cell), body.dofs.basis_number(cell)))
                 .or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
         }
+        check_material(body, &tables, &material)?;
         let position = hold::position(&bodies);
         let faces = Faces::new(&bodies, &groups);
         let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
@@ -121,7 +130,7 @@ impl<const D: usize> SolidBody<D> {
         let size = (high - low).max();
         let mut out = SolidBody {
             bodies,
-            law,
+            material,
             groups,
             faces,
             edges: BTreeMap::new(),
@@ -129,9 +138,12 @@ impl<const D: usize> SolidBody<D> {
             stiffness: Vec::new(),
             position,
             size,
+            history: History::default(),
         };
-        if law == StressLaw::LinearElastic {
-            out.stiffness = out.small_strain();
+        let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
+        out.history = History::new(out.law(), points);
+        if out.law().is_linear() {
+            out.stiffness = out.linear_stiffness()?;
         }
         Ok(out)
     }
@@ -155,8 +167,9 @@ impl<const D: usize> SolidBody<D> {
         self.bodies.space
     }
 
-    pub fn law(&self) -> StressLaw {
-        self.law
+    /// The stress law; of a material that varies a typical one.
+    pub fn law(&self) -> &StressLaw {
+        self.material.law()
     }
 
     pub fn mesh(&self) -> &Mesh<D> {
@@ -175,16 +188,21 @@ impl<const D: usize> SolidBody<D> {
         (unknowns, signs)
     }
 
-    /// The stiffness of all cells at small strain.
-    fn small_strain(&self) -> Vec<(Vec<u32>, Vec<f64>)> {
+    /// The stiffness of all cells of a linear law.
+    fn linear_stiffness(&self) -> Result<Vec<(Vec<u32>, Vec<f64>)>, SolidError> {
         let body = self.body();
+        let rest = self.start();
         let of = |cell: usize| {
             let basis = body.dofs.basis(cell);
-            let matrix = stiffness(&body.mesh, cell, self.table(cell), basis, &body.material, self.bodies.space);
+            let matrix = if self.material.is_uniform_hooke() {
+                stiffness(&body.mesh, cell, self.table(cell), basis, &body.material, self.bodies.space)
+            } else {
+                self.tangent_of(cell, &rest)?
+            };
             let (unknowns, signs) = self.unknowns_of(cell);
             let n = unknowns.len();
             let values = (0..n * n).map(|k| matrix[(k / n, k % n)] * signs[k / n] * signs[k % n]).collect();
-            (unknowns, values)
+            Ok((unknowns, values))
         };
         (0..body.mesh.cell_count()).into_par_iter().map(of).collect()
     }
@@ -212,7 +230,33 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
-/// Unit vector of a direction, in space.
+/// Whether the constants of a material that varies make sense at all quadrature points.
+fn check_material<const D: usize>(
+    body: &crate::body::Body<D>,
+    tables: &HashMap<(usize, usize), Table>,
+    material: &SolidMaterial,
+) -> Result<(), SolidError> {
+    if !material.varies() {
+        return Ok(());
+    }
+    for cell in 0..body.mesh.cell_count() {
+        for at in &tables[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))].map {
+            let (here, law) = material.at(&spatial(&body.mesh.position(cell, at)));
+            let (youngs_modulus, poissons_ratio) = (here.youngs_modulus, here.poissons_ratio);
+            let is_direction = law.fibre_direction().is_none_or(|a| a.iter().all(|v| v.is_finite()));
+            if !(youngs_modulus > 0.0
+                && youngs_modulus.is_finite()
+                && poissons_ratio > -1.0
+                && poissons_ratio < 0.5
+                && is_direction)
+            {
+                return Err(SolidError::Material { youngs_modulus, poissons_ratio });
+            }
+        }
+    }
+    Ok(())
+}
+
 impl<const D: usize> Body for SolidBody<D> {
     fn name(&self) -> &str {
         &self.body().name
@@ -223,18 +267,18 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn start(&self) -> BodyState {
-        BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
+        BodyState { configuration: vec![0.0; self.unknowns()], internal: self.history.start(self.law()) }
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
-        BodyState { configuration, internal: Vec::new() }
+        BodyState { configuration, internal: state.internal.clone() }
     }
 
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let u = &state.configuration;
-        if self.law != StressLaw::LinearElastic {
-            return self.finite_strain(u, order, out);
+        if !self.law().is_linear() {
+            return self.integrated(state, order, out);
         }
         let product = |(unknowns, values): &(Vec<u32>, Vec<f64>)| -> Vec<f64> {
             let own: Vec<f64> = unknowns.iter().map(|k| u[*k as usize]).collect();
@@ -338,7 +382,7 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn fields(&self, state: &BodyState) -> BodyFields {
-        self.shown(&state.configuration)
+        self.shown(state)
     }
 }
 
@@ -355,7 +399,7 @@ impl<const D: usize> Elimination for SolidBody<D> {
     }
 
     fn is_linear(&self) -> bool {
-        self.law == StressLaw::LinearElastic
+        self.law().is_linear()
     }
 }
 

@@ -176,6 +176,8 @@ impl Slack for Sheet {}
 
 impl BoxOfMaterial for Sheet {}
 
+impl Constitution for Sheet {}
+
 struct SheetMaster<'a> {
     sheet: &'a Sheet,
     state: &'a BodyState,

@@ -14,8 +14,8 @@ use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination,
-    Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// Numbers of a node in a configuration, and unknowns.
@@ -412,3 +412,5 @@ impl ContactSides for Beam {
 impl Slack for Beam {}
 
 impl BoxOfMaterial for Beam {}
+
+impl Constitution for Beam {}

@@ -15,8 +15,8 @@ use crate::quaternion;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination, Hold,
-    Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Elimination, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A cable that cannot be.
@@ -315,3 +315,5 @@ impl Slack for Cable {
 }
 
 impl BoxOfMaterial for Cable {}
+
+impl Constitution for Cable {}

@@ -17,8 +17,8 @@ use crate::quaternion::axis;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Elimination,
-    Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
+    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A rope that cannot be.
@@ -506,3 +506,5 @@ impl Slack for Chain {
 }
 
 impl BoxOfMaterial for Chain {}
+
+impl Constitution for Chain {}

@@ -10,8 +10,17 @@ use signorini_mechanics::BodyFields;
 use std::collections::HashMap;
 
 /// Names of arrays as files of fields have them.
-const NAMES: [&str; 8] =
-    ["tension", "axial_force", "shear_force", "torque", "bending_moment", "arc_length", "element", "von_mises"];
+const NAMES: [&str; 9] = [
+    "tension",
+    "axial_force",
+    "shear_force",
+    "torque",
+    "bending_moment",
+    "arc_length",
+    "element",
+    "von_mises",
+    "plastic_strain",
+];
 /// What solids call their stress, and what files of fields do.
 pub(super) const STRESS: [&str; 2] = ["stress", "stress_xx_yy_zz_xy_yz_xz"];
 /// Points closer than this part of the size of a body are one.

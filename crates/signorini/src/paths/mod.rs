@@ -21,6 +21,7 @@ use crate::run::{Progress, environment};
 use crate::scene::SceneError;
 pub use case::PathCase;
 use output::Line;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -81,6 +82,7 @@ pub fn run_into(case: &PathCase, folder: &Folder, progress: &mut dyn Progress) -
         units: head.unit_names(),
         first_picture: picture::are_wanted(case).then(|| "pictures/paths.png".into()),
         warnings: head.warnings.iter().cloned().chain(found.warnings).collect(),
+        materials: BTreeMap::new(),
         interpreted: head.interpreted.clone(),
         steps: found.steps,
         events: Vec::new(),

@@ -1,9 +1,12 @@
 //! From the statement to the cells of solids, their materials and laws of friction.
 
+mod elastic_plastic;
 mod friction;
 mod interface;
 mod material;
 mod mesh;
+mod orthotropic;
+mod rubber;
 
 use super::mechanics::odd_modulus;
 use super::pieces::Apart;
@@ -12,21 +15,19 @@ use super::planner::Planner;
 use crate::problem::{self, CaseError, KeyPath, SolidMesh};
 use crate::report::Warning;
 use signorini_fem::Mesh;
+use signorini_solid::SolidMaterial;
 
 impl Planner<'_> {
-    /// The cells of a solid, and the degree of its functions.
+    /// The cells of a solid, the degree of its functions, and what it is made of.
     pub(super) fn solid<const D: usize>(
         &self,
         name: &str,
         key: &problem::Solid,
         at: KeyPath,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(Mesh<D>, usize), CaseError> {
+    ) -> Result<(Mesh<D>, usize, SolidMaterial), CaseError> {
         let problem = self.problem;
-        let (material, _) = self.material(key)?;
-        if let Some(units) = self.reader.units {
-            warnings.extend(odd_modulus(units, material.youngs_modulus, name).map(Warning::from));
-        }
+        let material = self.material(key)?;
         let stated = match &key.degree {
             None => None,
             Some(d) if (1..=8).contains(d) => Some(*d as usize),
@@ -45,6 +46,11 @@ impl Planner<'_> {
             SolidMesh::Arrays(arrays) => self.mesh_of_arrays::<D>(arrays)?,
             SolidMesh::Nurbs(_) => return Err(self.unavailable(&key.mesh, "a NURBS solid")),
         };
+        let material = self.typical(key, material, &mesh)?;
+        let elastic = material.elastic();
+        if let Some(units) = self.reader.units {
+            warnings.extend(odd_modulus(units, elastic.youngs_modulus, name).map(Warning::from));
+        }
         let simplices = (0..mesh.cell_count()).any(|c| !mesh.shape(c).is_tensor());
         let order = (0..mesh.cell_count()).map(|c| mesh.map(c).order()).max().unwrap_or(1);
         let degree = stated.unwrap_or(order);
@@ -54,17 +60,17 @@ impl Planner<'_> {
                 .error(&at, format!("degree {degree} on a mesh with triangles, tetrahedra or wedges"))
                 .help("these have degree 1 or 2; quadrilaterals and hexahedra have degree 1 to 8"));
         }
-        let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, &material);
+        let locks = |c: usize| signorini_solid::stiffness::locks(mesh.shape(c), degree, elastic);
         if (0..mesh.cell_count()).any(locks) {
             warnings.push(
                 format!(
                     "`{name}`: triangles or tetrahedra of degree 1 lock with Poisson's ratio {}: use degree 2",
-                    material.poissons_ratio
+                    elastic.poissons_ratio
                 )
                 .into(),
             );
         }
         warnings.extend(Apart::new(&mesh).and_then(|apart| apart.warning(name)).map(Warning::from));
-        Ok((mesh, degree))
+        Ok((mesh, degree, material))
     }
 }

@@ -51,6 +51,9 @@ pub struct Summary {
     pub first_picture: Option<String>,
     /// Warnings from before or during the run.
     pub warnings: Vec<Warning>,
+    /// Stress law of each solid, by the name of the body.
+    #[serde(default)]
+    pub materials: BTreeMap<String, String>,
     /// How values with units were converted: line, text, value, unit and factor.
     pub interpreted: Vec<Interpreted>,
     /// One entry per increment.
@@ -131,9 +134,12 @@ pub struct StepReport {
     pub linear_iterations: Option<usize>,
     /// Residual of each iteration, relative to its tolerance.
     pub residual_history: Vec<f64>,
-    /// Elastic energy of the bodies. For a membrane its potential energy, which is the elastic energy minus the work of
+    /// Elastic energy of the bodies, with that of kinematic hardening. For a membrane its potential energy, which is the elastic energy minus the work of
     /// the load.
     pub energy: Option<f64>,
+    /// Energy dissipated by plastic strain in the increment. Null without elastic-plastic bodies.
+    #[serde(default)]
+    pub plastic_dissipation: Option<f64>,
     /// `energy` minus the adhesion energy of the contact zones.
     pub energy_total: Option<f64>,
     /// Integral of the deflection of a membrane.

@@ -103,6 +103,8 @@ pub enum WarningKind {
     EventInterval,
     /// The strain is too large for the small-strain theory.
     LargeStrain,
+    /// A hyperelastic material softens at its stretches: it is not stable there.
+    UnstableMaterial,
     /// The sides of a contact do not face each other.
     NotFacing,
     /// The equilibrium or the contact forces may not be unique.

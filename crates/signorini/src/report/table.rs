@@ -195,6 +195,9 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
         rows.iter_mut().zip(steps).for_each(|(row, step)| row.push(number(value(step))));
     };
     add("energy".into(), unit(|u| &u.energy), &|s| s.energy);
+    if steps.iter().any(|s| s.plastic_dissipation.is_some()) {
+        add("plastic_dissipation".into(), unit(|u| &u.energy), &|s| s.plastic_dissipation);
+    }
     add("equilibrium_residual".into(), "", &|s| s.equilibrium_residual);
     const AXES: [&str; 3] = ["x", "y", "z"];
     for name in names(steps, |s| &s.contacts) {

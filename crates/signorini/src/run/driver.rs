@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use signorini_audit::{Check, Finding, Verdict, worst};
 use signorini_solve::{Iteration, Progress};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -91,6 +92,11 @@ pub trait Model {
 
     /// How the contact is found.
     fn method(&self) -> String;
+
+    /// The stress law of each solid, by its name.
+    fn materials(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
 
     /// The last state, enough to go on from to the same digits; none where one cannot go on from there.
     ///
@@ -337,6 +343,7 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
         units: record.units.clone(),
         first_picture: model.first_picture().filter(|_| record.pictures && record.folder.keeps()),
         warnings: record.warnings.clone(),
+        materials: model.materials(),
         interpreted: record.interpreted.clone(),
         steps: record.steps.clone(),
         events: record.events.clone(),

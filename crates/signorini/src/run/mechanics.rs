@@ -22,6 +22,7 @@ use serde_json::{Value, json};
 use signorini_audit::Finding;
 use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Share of an increment below which it is not cut any more.
@@ -87,6 +88,7 @@ impl MechanicsModel {
         let (mut iterations, mut residuals) = (0, Vec::new());
         // Of the parts of the increment before the last one, by contact.
         let mut dissipated = vec![0.0; self.plan.system.contacts.len()];
+        let mut in_bodies = vec![0.0; self.plan.system.bodies.len()];
         let unknowns: usize = self.plan.system.bodies.iter().map(|b| b.unknowns()).sum();
         let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
         let mut lost: Option<Stability> = None;
@@ -118,6 +120,7 @@ impl MechanicsModel {
                 Ok((state, mut result)) => {
                     iterations += result.iterations;
                     dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
+                    in_bodies.iter_mut().zip(&result.dissipated_in_bodies).for_each(|(sum, own)| *sum += own);
                     // An increment that was cut tells of the first part that lost its stability.
                     if let Some(told) = &mut result.stability {
                         if let Some(before) = lost.take() {
@@ -127,7 +130,10 @@ impl MechanicsModel {
                     }
                     if last {
                         self.state = state;
-                        let mut found = IncrementResult { iterations, history: residuals, dissipated, ..result };
+                        let dissipated_in_bodies = in_bodies;
+                        let history = residuals;
+                        let mut found =
+                            IncrementResult { iterations, history, dissipated, dissipated_in_bodies, ..result };
                         let of_contacts = found.sites.iter_mut().zip(&self.plan.contacts);
                         let at_nodes = of_contacts.filter(|(_, tested)| tested.at_nodes);
                         at_nodes.for_each(|(sites, _)| recovered::recover(sites));
@@ -401,6 +407,11 @@ impl Model for MechanicsModel {
             }
             _ => report::verdict(&self.plan, record),
         }
+    }
+
+    fn materials(&self) -> BTreeMap<String, String> {
+        let bodies = self.plan.system.bodies.iter();
+        bodies.filter_map(|body| Some((body.name().to_string(), body.law_name()?))).collect()
     }
 
     fn method(&self) -> String {

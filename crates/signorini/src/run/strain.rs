@@ -1,7 +1,7 @@
 //! Where the theory of small strains ends.
 
 use crate::fields::Fields;
-use crate::problem::{Body, Material, Problem};
+use crate::problem::{Body, Problem};
 use crate::report::{Warning, WarningKind};
 use nalgebra::Matrix3;
 use signorini_geometry::Vector;
@@ -40,12 +40,11 @@ impl Strained {
 
 /// Whether a body is one of small strains.
 pub fn is_small(problem: &Problem, body: &str) -> bool {
-    let material = match problem.bodies.get(body) {
-        Some(Body::Solid(solid)) => &solid.material,
-        Some(Body::Cells(cells)) => &cells.material,
-        _ => return false,
-    };
-    matches!(material, Material::LinearElastic(_))
+    match problem.bodies.get(body) {
+        Some(Body::Solid(solid)) => solid.strain.as_deref() != Some("finite"),
+        Some(Body::Cells(_)) => true,
+        _ => false,
+    }
 }
 
 /// The largest principal strain, by its absolute value, of the cells of a body as it is shown, from the gradient of the

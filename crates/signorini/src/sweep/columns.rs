@@ -36,7 +36,11 @@ pub fn unit(summary: &Value, path: &str) -> String {
         "tension" | "tension_limits" | "least" | "largest" => &names.force,
         "wall_seconds" | "cpu_seconds" | "audit_seconds" => "s",
         "peak_memory" => "B",
-        key if key.starts_with("energy") || matches!(key, "adhesion_energy" | "dissipation") => &names.energy,
+        key if key.starts_with("energy")
+            || matches!(key, "adhesion_energy" | "dissipation" | "plastic_dissipation") =>
+        {
+            &names.energy
+        }
         key if key.contains("force") || key.ends_with("_tension") => &names.force,
         _ => "",
     };

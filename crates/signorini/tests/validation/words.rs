@@ -6,7 +6,8 @@ use signorini_solve::Silent;
 
 /// The keys of a table and of all within it, but for those of tables whose keys are names of the case.
 fn words(v: &serde_json::Value, out: &mut std::collections::BTreeSet<String>) {
-    const NAMED: [&str; 6] = ["contacts", "probes", "support_forces", "load_forces", "support_moments", "load_moments"];
+    const NAMED: [&str; 7] =
+        ["contacts", "probes", "support_forces", "load_forces", "support_moments", "load_moments", "materials"];
     match v {
         serde_json::Value::Object(table) => {
             for (key, inner) in table {

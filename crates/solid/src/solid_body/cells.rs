@@ -1,4 +1,4 @@
-//! Forces and tangent of cells at finite strain.
+//! Forces and tangent of cells from a stress law.
 //!
 //! `Π = Σ_q w_q (V(F_q) + U(θ_q))` with the dilatation `θ = P φ(F)`, projected on polynomials of one degree less as the
 //! divergence is at small strain (Simo, Taylor & Pister 1985 for degree 1), or not at all. `P` is its own adjoint under the
@@ -6,13 +6,14 @@
 //! `Σ w U''(θ) (P φ' δF)²` to `V'' + p φ''`: symmetric, with an energy.
 
 use super::SolidBody;
-use crate::hyperelastic::{Response, StrainError, Tensor};
-use crate::material::Space;
+use super::spatial::spatial;
+use crate::law::{Response, StrainError, StressLaw, Tensor};
+use crate::material::{Elastic, Space};
 use crate::stiffness::{Table, pressures, projects};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::small::{determinant, inverse};
-use signorini_mechanics::{BodyError, Contribution, Order};
+use signorini_mechanics::{BodyError, BodyState, Contribution, Order};
 
 /// Radii below this share of the size of the body are on the axis.
 const ON_AXIS: f64 = 1e-12;
@@ -27,9 +28,11 @@ struct CellForces {
 /// The gradient of the displacement at the points of a cell: the components that there are, point after point, for each
 /// unknown.
 pub(super) struct Gradients {
-    components: &'static [usize],
+    pub components: &'static [usize],
     pub rows: DMatrix<f64>,
     pub weights: Vec<f64>,
+    /// Constants and law at each point.
+    pub laws: Vec<(Elastic, StressLaw)>,
 }
 
 impl Gradients {
@@ -43,14 +46,14 @@ impl Gradients {
         f
     }
 
-    fn reduced(&self, tensor: &Tensor) -> DVector<f64> {
+    pub fn reduced(&self, tensor: &Tensor) -> DVector<f64> {
         DVector::from_iterator(self.components.len(), self.components.iter().map(|c| tensor[*c]))
     }
 }
 
 impl<const D: usize> SolidBody<D> {
-    pub(super) fn finite_strain(&self, u: &[f64], order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
-        let of = |cell: usize| self.cell(cell, u, order).map_err(|e| self.refused(cell, e));
+    pub(super) fn integrated(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        let of = |cell: usize| self.cell(cell, state, order).map_err(|e| self.refused(cell, e));
         let cells = (0..self.body().mesh.cell_count()).into_par_iter();
         let found: Vec<Result<CellForces, BodyError>> = cells.map(of).collect();
         let mut energy = 0.0;
@@ -78,6 +81,12 @@ impl<const D: usize> SolidBody<D> {
         }
     }
 
+    /// The unknowns of a cell, as its basis has them.
+    pub(super) fn own(&self, cell: usize, u: &[f64]) -> DVector<f64> {
+        let (unknowns, signs) = self.unknowns_of(cell);
+        DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]))
+    }
+
     /// Gradients at the points of a table.
     pub(super) fn gradients(&self, cell: usize, table: &Table) -> Gradients {
         let body = self.body();
@@ -90,9 +99,11 @@ impl<const D: usize> SolidBody<D> {
         let count = components.len();
         let mut rows = DMatrix::<f64>::zeros(count * table.points.len(), n * D);
         let mut weights = Vec::with_capacity(table.points.len());
+        let mut laws = Vec::with_capacity(table.points.len());
         for (q, (_, w)) in table.points.iter().enumerate() {
             let (x, jacobian) = body.mesh.jacobian(cell, &table.map[q]);
             weights.push(w * determinant(&jacobian) * self.bodies.measure(&x));
+            laws.push(self.material.at(&spatial(&x)));
             let inverse = inverse(&jacobian);
             for (a, slope) in table.basis[q].gradient.iter().enumerate() {
                 let along: [f64; D] = std::array::from_fn(|j| (0..D).map(|k| slope[k] * inverse[(k, j)]).sum());
@@ -108,7 +119,7 @@ impl<const D: usize> SolidBody<D> {
                 }
             }
         }
-        Gradients { components, rows, weights }
+        Gradients { components, rows, weights, laws }
     }
 
     /// The projection of the dilatation at the points of a cell to those of a table, where there is one.
@@ -118,6 +129,13 @@ impl<const D: usize> SolidBody<D> {
         if !projects(basis, &body.material, self.bodies.space) {
             return None;
         }
+        self.fit(cell, weights, to)
+    }
+
+    /// The best fit by polynomials of one degree less, discontinuous from cell to cell: from values at the points of a cell to
+    /// those at the points of a table.
+    pub(super) fn fit(&self, cell: usize, weights: &[f64], to: &Table) -> Option<DMatrix<f64>> {
+        let basis = self.body().dofs.basis(cell);
         let psi = pressures::<D>(basis, self.table(cell));
         let mut weighted = psi.clone();
         weighted.column_iter_mut().zip(weights).for_each(|(mut c, w)| c *= *w);
@@ -125,10 +143,14 @@ impl<const D: usize> SolidBody<D> {
         Some(pressures::<D>(basis, to).transpose() * factor.solve(&weighted))
     }
 
-    fn cell(&self, cell: usize, u: &[f64], order: Order) -> Result<CellForces, StrainError> {
-        let (elastic, law) = (&self.body().material, self.law);
-        let (unknowns, signs) = self.unknowns_of(cell);
-        let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
+    /// The tangent of a cell in a state, functions in the order and sign of the basis.
+    pub(super) fn tangent_of(&self, cell: usize, state: &BodyState) -> Result<DMatrix<f64>, StrainError> {
+        Ok(self.cell(cell, state, Order::Second)?.tangent.unwrap_or_default())
+    }
+
+    fn cell(&self, cell: usize, state: &BodyState, order: Order) -> Result<CellForces, StrainError> {
+        let unknowns = D * self.body().dofs.basis(cell).len();
+        let own = self.own(cell, &state.configuration);
         let at = self.gradients(cell, self.table(cell));
         let displacement = &at.rows * &own;
         let points = at.weights.len();
@@ -138,12 +160,13 @@ impl<const D: usize> SolidBody<D> {
         let mut dilatations: Vec<Response> = Vec::new();
         for q in 0..points {
             let f = at.deformation(q, &displacement);
+            let (elastic, law) = &at.laws[q];
             if self.bodies.space == Space::PlaneStress {
                 responses.push(law.plane_stress(elastic, &f)?);
                 continue;
             }
             law.check(&f)?;
-            responses.push(law.deviatoric(elastic, &f));
+            responses.push(law.deviatoric(elastic, &f, self.history.at(state, cell, q)));
             dilatations.push(law.dilatation(&f));
         }
         // Volumetric part: pressure at each point, and how it changes with the dilatation.
@@ -155,10 +178,8 @@ impl<const D: usize> SolidBody<D> {
             let theta = projection.as_ref().map_or(phi.clone(), |p| p * &phi);
             let mut pressure = DVector::<f64>::zeros(points);
             for q in 0..points {
-                let [value, slope, second] = law.volumetric(elastic, theta[q]);
-                if !value.is_finite() {
-                    return Err(StrainError::Inverted { jacobian: theta[q] });
-                }
+                let (elastic, law) = &at.laws[q];
+                let [value, slope, second] = law.volumetric(elastic, theta[q])?;
                 energy += at.weights[q] * value;
                 (pressure[q], curvature[q]) = (slope, second);
             }
@@ -179,7 +200,7 @@ impl<const D: usize> SolidBody<D> {
         if order == Order::First {
             return Ok(CellForces { energy, forces, tangent: None });
         }
-        let mut turned = DMatrix::<f64>::zeros(count * points, unknowns.len());
+        let mut turned = DMatrix::<f64>::zeros(count * points, unknowns);
         for (q, response) in responses.iter().enumerate() {
             let tangent = DMatrix::from_fn(count, count, |r, c| {
                 at.weights[q] * response.tangent[(at.components[r], at.components[c])]
@@ -188,7 +209,7 @@ impl<const D: usize> SolidBody<D> {
         }
         let mut tangent = at.rows.tr_mul(&turned);
         if !dilatations.is_empty() {
-            let mut change = DMatrix::<f64>::zeros(points, unknowns.len());
+            let mut change = DMatrix::<f64>::zeros(points, unknowns);
             for (q, dilatation) in dilatations.iter().enumerate() {
                 let row = at.rows.rows(q * count, count).tr_mul(&at.reduced(&dilatation.stress));
                 change.row_mut(q).copy_from(&row.transpose());

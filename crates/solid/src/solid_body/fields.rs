@@ -2,15 +2,15 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::hyperelastic::StressLaw;
-use crate::material::{Space, von_mises};
+use crate::law::StressLaw;
+use crate::material::{Elastic, Space, von_mises};
 use crate::stiffness::Table;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::{Point, Vector};
-use signorini_mechanics::BodyFields;
+use signorini_mechanics::{BodyFields, BodyState};
 use std::collections::HashMap;
 
 /// A cell divided into straight ones.
@@ -19,12 +19,20 @@ struct Division {
     cells: Vec<Vec<u32>>,
 }
 
-/// Displacement and Cauchy stress at a point.
-type Shown = (Point<3>, Vector<3>, Matrix3<f64>);
+/// What is shown of a point.
+#[derive(Clone, Copy)]
+struct Shown {
+    x: Point<3>,
+    displacement: Vector<3>,
+    /// Cauchy stress.
+    stress: Matrix3<f64>,
+    /// Equivalent plastic strain; zero of elastic laws.
+    plastic_strain: f64,
+}
 
 impl<const D: usize> SolidBody<D> {
     /// Tetrahedra and wedges are shown as hexahedra with corners that coincide.
-    pub(super) fn shown(&self, u: &[f64]) -> BodyFields {
+    pub(super) fn shown(&self, state: &BodyState) -> BodyFields {
         let body = self.body();
         let mut divisions: HashMap<(usize, usize), Division> = HashMap::new();
         for cell in 0..body.mesh.cell_count() {
@@ -34,85 +42,123 @@ impl<const D: usize> SolidBody<D> {
         }
         let of = |cell: usize| &divisions[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
         let cells: Vec<usize> = (0..body.mesh.cell_count()).collect();
-        let found: Vec<Vec<Shown>> = cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, u)).collect();
+        let found: Vec<Vec<Shown>> =
+            cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, state)).collect();
         let mut out = BodyFields::default();
         let mut stress = Vec::new();
         let mut equivalent = Vec::new();
+        let mut plastic = Vec::new();
         for (cell, points) in found.into_iter().enumerate() {
             let first = out.points.len() as u32;
             out.cells.extend(of(cell).cells.iter().map(|c| c.iter().map(|k| first + k).collect()));
-            for (q, (x, moved, mut s)) in points.into_iter().enumerate() {
+            for (q, Shown { x, displacement, stress: mut s, plastic_strain }) in points.into_iter().enumerate() {
                 let xi = of(cell).table.points[q].0;
                 let inner = body.mesh.shown_at(cell, &xi);
                 if inner != xi {
-                    s = self.points_of(cell, &self.table_at(cell, &[inner]), u)[0].2;
+                    s = self.points_of(cell, &self.table_at(cell, &[inner]), state)[0].stress;
                 }
                 out.points.push(x);
-                out.displacement.push(moved);
+                out.displacement.push(displacement);
+                plastic.push(plastic_strain);
                 stress.extend([s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]]);
                 equivalent.push(von_mises(&s));
             }
         }
         out.point_data.push(("stress".into(), 6, stress));
         out.point_data.push(("von_mises".into(), 1, equivalent));
+        if self.law().has_history() {
+            out.point_data.push(("plastic_strain".into(), 1, plastic));
+        }
         out
     }
 
-    fn points_of(&self, cell: usize, table: &Table, u: &[f64]) -> Vec<Shown> {
-        let (elastic, law) = (&self.body().material, self.law);
-        let (unknowns, signs) = self.unknowns_of(cell);
-        let own = DVector::from_iterator(unknowns.len(), unknowns.iter().zip(&signs).map(|(k, s)| s * u[*k as usize]));
+    /// Stress and plastic strain of laws with history are known at the quadrature points, and fitted from there to others.
+    fn points_of(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
+        if !self.law().has_history() {
+            return self.evaluated(cell, table, state);
+        }
+        let own = self.own(cell, &state.configuration);
+        let known = self.evaluated(cell, self.table(cell), state);
+        let weights = self.gradients(cell, self.table(cell)).weights;
+        let fit = self.fit(cell, &weights, table);
+        let shown = |q: usize| {
+            let mut shown = Shown {
+                x: spatial(&self.body().mesh.position(cell, &table.map[q])),
+                displacement: moved::<D>(&table.basis[q], &own),
+                stress: Matrix3::zeros(),
+                plastic_strain: 0.0,
+            };
+            for (k, point) in known.iter().enumerate() {
+                let share = fit.as_ref().map_or(1.0 / known.len() as f64, |fit| fit[(q, k)]);
+                shown.stress += point.stress * share;
+                shown.plastic_strain += point.plastic_strain * share;
+            }
+            // A fit may fall below zero where plastic strain begins.
+            shown.plastic_strain = shown.plastic_strain.max(0.0);
+            shown
+        };
+        (0..table.points.len()).map(shown).collect()
+    }
+
+    /// What the law gives at the points of a table: of laws with history those of quadrature.
+    fn evaluated(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
+        let own = self.own(cell, &state.configuration);
         let at = self.gradients(cell, table);
         let gradients = &at.rows * &own;
         let plane_stress = self.bodies.space == Space::PlaneStress;
         // The pressure as it acts in the cell: projected where the dilatation is.
         let pressure = |q: usize, f: &Matrix3<f64>, projected: &Option<DVector<f64>>| match projected {
             Some(p) => p[q],
-            None => law.volumetric(elastic, law.dilatation(f).energy)[1],
+            None => {
+                let (elastic, law) = &at.laws[q];
+                law.volumetric(elastic, law.dilatation(f).energy).map_or(f64::NAN, |u| u[1])
+            }
         };
         let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own) };
         (0..table.points.len())
             .map(|q| {
                 let f = at.deformation(q, &gradients);
+                let (elastic, law) = &at.laws[q];
+                let history = self.history.at(state, cell, q);
                 let stress = if plane_stress {
                     law.plane_stress(elastic, &f).map(|r| r.stress).unwrap_or_default()
                 } else {
-                    law.deviatoric(elastic, &f).stress + law.dilatation(&f).stress * pressure(q, &f, &projected)
+                    law.deviatoric(elastic, &f, history).stress
+                        + law.dilatation(&f).stress * pressure(q, &f, &projected)
                 };
                 let piola = Matrix3::from_fn(|i, j| stress[3 * i + j]);
                 // In plane stress the thickness changes as well, with no stress across.
-                let cauchy = match law {
-                    StressLaw::LinearElastic => piola,
-                    _ => piola * f.transpose() / self.volume_ratio(&f),
+                let cauchy = match law.is_small_strain() {
+                    true => piola,
+                    false => piola * f.transpose() / self.volume_ratio((elastic, law), &f),
                 };
-                let mut moved = Vector::<3>::zeros();
-                for (a, v) in table.basis[q].value.iter().enumerate() {
-                    (0..D).for_each(|i| moved[i] += v * own[a * D + i]);
+                Shown {
+                    x: spatial(&self.body().mesh.position(cell, &table.map[q])),
+                    displacement: moved::<D>(&table.basis[q], &own),
+                    stress: cauchy,
+                    plastic_strain: law.plastic(elastic, &f, history).map_or(0.0, |point| point.history[0]),
                 }
-                (spatial(&self.body().mesh.position(cell, &table.map[q])), moved, cauchy)
             })
             .collect()
     }
 
-    fn volume_ratio(&self, f: &Matrix3<f64>) -> f64 {
-        let across = if self.bodies.space == Space::PlaneStress {
-            self.law.stretch_across(&self.body().material, f)
-        } else {
-            f[(2, 2)]
-        };
+    fn volume_ratio(&self, (elastic, law): (&Elastic, &StressLaw), f: &Matrix3<f64>) -> f64 {
+        let across = if self.bodies.space == Space::PlaneStress { law.stretch_across(elastic, f) } else { f[(2, 2)] };
         let mut f = *f;
         f[(2, 2)] = across;
         f.determinant()
     }
 
     fn projected_pressure(&self, cell: usize, to: &Table, own: &DVector<f64>) -> Option<DVector<f64>> {
-        let (elastic, law) = (&self.body().material, self.law);
         let inner = self.gradients(cell, self.table(cell));
         let project = self.projection(cell, &inner.weights, self.table(cell))?;
         let gradients = &inner.rows * own;
-        let phi = (0..inner.weights.len()).map(|q| law.dilatation(&inner.deformation(q, &gradients)).energy);
+        let phi =
+            (0..inner.weights.len()).map(|q| inner.laws[q].1.dilatation(&inner.deformation(q, &gradients)).energy);
         let theta = project * DVector::from_iterator(inner.weights.len(), phi);
-        let slopes = theta.map(|t| law.volumetric(elastic, t)[1]);
+        let slope =
+            |(t, (elastic, law)): (&f64, &(Elastic, StressLaw))| law.volumetric(elastic, *t).map_or(f64::NAN, |u| u[1]);
+        let slopes = DVector::from_iterator(inner.weights.len(), theta.iter().zip(&inner.laws).map(slope));
         self.projection(cell, &inner.weights, to).map(|p| p * slopes)
     }
 
@@ -123,7 +169,7 @@ impl<const D: usize> SolidBody<D> {
         Division { table: self.table_at(cell, &points), cells }
     }
 
-    fn table_at(&self, cell: usize, points: &[Local]) -> Table {
+    pub(super) fn table_at(&self, cell: usize, points: &[Local]) -> Table {
         let (map, basis) = (self.body().mesh.map(cell), self.body().dofs.basis(cell));
         let tabulate = |f: &dyn Fn(&Local, &mut Values)| -> Vec<Values> {
             (points.iter())
@@ -137,6 +183,15 @@ impl<const D: usize> SolidBody<D> {
         let (of_map, of_basis) = (tabulate(&|x, at| map.tabulate(x, at)), tabulate(&|x, at| basis.tabulate(x, at)));
         Table { points: points.iter().map(|x| (*x, 0.0)).collect(), map: of_map, basis: of_basis }
     }
+}
+
+/// The displacement at a point with these values of the functions.
+fn moved<const D: usize>(at: &Values, own: &DVector<f64>) -> Vector<3> {
+    let mut out = Vector::<3>::zeros();
+    for (a, v) in at.value.iter().enumerate() {
+        (0..D).for_each(|i| out[i] += v * own[a * D + i]);
+    }
+    out
 }
 
 /// Points of a reference cell and the straight cells between them, `n` along each edge; of a tetrahedron at most two.

@@ -5,7 +5,6 @@
 
 use super::spatial::spatial;
 use super::{SolidBody, axis};
-use crate::hyperelastic::StressLaw;
 use crate::material::Space;
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
@@ -30,7 +29,7 @@ impl<const D: usize> SolidBody<D> {
             Load::Traction(traction) => {
                 self.on_sides(on, &mut |x, area, list| push::<D>(list, &(traction(x) * area), out)).map(|_| ())
             }
-            Load::Pressure(pressure) if self.law == StressLaw::LinearElastic => self.dead_pressure(on, pressure, out),
+            Load::Pressure(pressure) if self.law().is_small_strain() => self.dead_pressure(on, pressure, out),
             Load::Pressure(pressure) => self.follower_pressure(on, pressure, u, order, out),
             Load::Springs(stiffness) => self.springs(on, stiffness, u, order, out),
             Load::Moment(moment) => self.moment(on, moment, u, order, out),

@@ -10,7 +10,6 @@
 //! `δJ ω = ∫ 2 (r·δr) ω - δr (r·ω) - r (δr·ω)`, `δω = -J⁻¹ δJ ω`.
 
 use super::{SolidBody, axis};
-use crate::hyperelastic::StressLaw;
 use crate::material::Space;
 use nalgebra::DMatrix;
 use signorini_geometry::{Matrix, Vector};
@@ -35,7 +34,7 @@ impl<const D: usize> SolidBody<D> {
         if D == 2 && (moment[0] != 0.0 || moment[1] != 0.0) {
             return Err(self.unsuitable("a body in the plane takes a moment about z only"));
         }
-        let moves = self.law() != StressLaw::LinearElastic;
+        let moves = !self.law().is_small_strain();
         // Points with their areas and functions, each unknown by its place in a list.
         let mut places: BTreeMap<u32, usize> = BTreeMap::new();
         let mut firsts: Vec<u32> = Vec::new();

@@ -20,6 +20,8 @@ use std::sync::Arc;
 
 /// Degree of the functions where it is not stated.
 pub const DEGREE: usize = 3;
+/// Parts of each side of the box of the cells, between which a modulus that varies is looked at.
+const SAMPLES: usize = 20;
 /// Names of the sides of the grid by direction, the lower one first; in the plane the second direction is up.
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["front", "back"], ["bottom", "top"]];
 
@@ -45,7 +47,19 @@ impl Planner<'_> {
             Some([min, max]) => Aabb::new(Point::<3>::from(min), Point::<3>::from(max)),
             None => Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0)),
         };
-        let elastic = self.elastic_of_cells(key)?;
+        let (elastic, modulus) = self.elastic_of_cells(key, &around)?;
+        if let (Some(_), Material::LinearElastic(stated)) = (&modulus, &key.material) {
+            let of_image =
+                matches!(&key.geometry, Geometry::Composed(Composed::Image(i)) if i.youngs_modulus.is_some());
+            let at = &stated.youngs_modulus;
+            if of_image {
+                return Err(problem.error(at, "the image states the modulus too").help("give a constant value"));
+            }
+            if bounds.is_none() {
+                let message = "Young's modulus varies, and the box of the cells is not stated";
+                return Err(problem.error(at, message).help("mesh.grid = { min = [...], max = [...], ... }"));
+            }
+        }
         let geometry = match &key.geometry {
             Geometry::Shape(Stated::Stl(file)) => Made::Triangles(Arc::new(self.closed_mesh(file)?)),
             Geometry::Shape(Stated::Triangles(arrays)) => Made::Triangles(Arc::new(self.surface_of_arrays(arrays)?)),
@@ -71,6 +85,7 @@ impl Planner<'_> {
         }
         let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, elastic);
         made.bounds = bounds;
+        made.modulus = modulus;
         made.memory = memory_at_hand();
         made.refinement = self.refinement(key)?;
         if key.functions == Some(CellFunctions::Trunk) {
@@ -153,7 +168,7 @@ impl Planner<'_> {
     }
 
     /// Names of coordinates.
-    pub(super) fn places(&self) -> &'static [&'static str] {
+    pub(in crate::plan) fn places(&self) -> &'static [&'static str] {
         if self.space == In::ThreeD { &["x", "y", "z"] } else { &["x", "y"] }
     }
 
@@ -164,14 +179,23 @@ impl Planner<'_> {
         Err(self.problem.error(n, format!("{n} is not between {least} and {most}")))
     }
 
-    fn elastic_of_cells(&self, key: &CellsBody) -> Result<Elastic, CaseError> {
+    /// The constants of the cells; of a Young's modulus that varies the largest one at points of a box, and the factor of it.
+    fn elastic_of_cells(
+        &self,
+        key: &CellsBody,
+        around: &Aabb<3>,
+    ) -> Result<(Elastic, Option<(Scalar, f64)>), CaseError> {
         let Material::LinearElastic(constants) = &key.material else {
             return Err(self
                 .problem
                 .error(&key.material, "finite cells are linear elastic with small strain")
                 .help("material.linear_elastic = { youngs_modulus = …, poissons_ratio = … }"));
         };
-        let youngs_modulus = self.reader.positive(&constants.youngs_modulus, PRESSURE)?;
+        let varying = self.modulus_of_cells(&constants.youngs_modulus, around)?;
+        let youngs_modulus = match &varying {
+            Some((most, _)) => *most,
+            None => self.reader.positive(&constants.youngs_modulus, PRESSURE)?,
+        };
         let poissons_ratio = self.reader.number(&constants.poissons_ratio, NONE)?;
         if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
             return Err(self
@@ -179,7 +203,37 @@ impl Planner<'_> {
                 .error(&constants.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
                 .help("above -1 and below 0.5"));
         }
-        Ok(Elastic { youngs_modulus, poissons_ratio })
+        Ok((Elastic { youngs_modulus, poissons_ratio }, varying.map(|(_, factor)| (factor, 1.0))))
+    }
+
+    /// The largest value of a modulus that varies at points of a box, and the modulus over it; none of a constant one.
+    fn modulus_of_cells(&self, value: &Value, around: &Aabb<3>) -> Result<Option<(f64, Scalar)>, CaseError> {
+        let expression = self.reader.expression(value, PRESSURE, self.places())?;
+        if expression.constant().is_some() {
+            return Ok(None);
+        }
+        let at = move |x: &Point<3>| expression.evaluate(&Scope { position: [x.x, x.y, x.z], time: 0.0 });
+        let counts = [SAMPLES, SAMPLES, if self.space == In::ThreeD { SAMPLES } else { 0 }];
+        let share = |k: usize, i: usize| i as f64 / counts[k].max(1) as f64;
+        let mut most = 0.0f64;
+        for (i, j, k) in (0..=counts[0])
+            .flat_map(|i| (0..=counts[1]).map(move |j| (i, j)))
+            .flat_map(|(i, j)| (0..=counts[2]).map(move |k| (i, j, k)))
+        {
+            let part = Vector::<3>::new(share(0, i), share(1, j), share(2, k));
+            let x = around.min + around.size().component_mul(&part);
+            let found = at(&x);
+            if !(found > 0.0 && found.is_finite()) {
+                let place: Vec<String> = x.iter().take(self.places().len()).map(|v| format!("{v:.6}")).collect();
+                let message = format!("Young's modulus is {found} at ({})", place.join(", "));
+                return Err(self
+                    .problem
+                    .error(value, message)
+                    .help("give values above 0 in the whole box of the cells"));
+            }
+            most = most.max(found);
+        }
+        Ok(Some((most, Arc::new(move |x: &Point<3>| at(x) / most))))
     }
 
     fn grid_of_cells(&self, key: &CellsBody) -> Result<Cells, CaseError> {

@@ -323,7 +323,7 @@ impl Planner<'_> {
             Some(nitsche @ Enforcement::Nitsche(_)) => {
                 return Err(self
                     .problem
-                    .error(nitsche, "Nitsche's method is by mortar or at quadrature points of solids with small strain, and for finite cells")
+                    .error(nitsche, "Nitsche's method is by mortar or at quadrature points of linear elastic solids, and for finite cells")
                     .help("enforcement.multiplier = {}"));
             }
         })
@@ -349,7 +349,7 @@ impl Planner<'_> {
             && let Some(nitsche @ Enforcement::Nitsche(_)) = &k.enforcement
         {
             if !knows_stress {
-                let message = "Nitsche's method is for solids with small strain and for finite cells";
+                let message = "Nitsche's method is for linear elastic solids and for finite cells";
                 return Err(problem.error(nitsche, message).help("enforcement.multiplier = {}"));
             }
             return Ok((Sampling::GaussPoints, Kept::Nitsche, "gauss_point"));

@@ -7,7 +7,7 @@ use crate::problem::{CaseError, Solid, SolidEdge, Space as Stated, suggestion};
 use crate::report::Warning;
 use signorini_fem::{Group, Halved, Side};
 use signorini_mechanics::Body;
-use signorini_solid::{EdgeError, EdgeOf, SolidBody, Space};
+use signorini_solid::{EdgeError, EdgeOf, SolidBody, SolidError, Space};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -46,8 +46,7 @@ impl Planner<'_> {
         space: Space,
         warnings: &mut Vec<Warning>,
     ) -> Result<PlannedSolid, CaseError> {
-        let (mesh, degree) = self.solid::<D>(name, key, self.key(key), warnings)?;
-        let law = self.material(key)?;
+        let (mesh, degree, material) = self.solid::<D>(name, key, self.key(key), warnings)?;
         let pieces = Pieces::new(name, &mesh);
         let mut groups = mesh.groups().clone();
         let mut mesh = mesh;
@@ -68,8 +67,10 @@ impl Planner<'_> {
             let group = Group { cells: Vec::new(), sides, vertices: vertices.into_iter().collect() };
             groups.insert(AXIS.to_string(), group);
         }
-        let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, law, space, groups)
-            .map_err(|e| self.problem.error(&key.mesh, e.to_string()))?;
+        let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, material, space, groups).map_err(|e| match e {
+            SolidError::Material { .. } => self.problem.error(&key.material, e.to_string()),
+            _ => self.problem.error(&key.mesh, e.to_string()),
+        })?;
         let edges = self.edges(key)?;
         let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
         Ok(PlannedSolid { body: body.into_body(), on_axis, pieces })

@@ -108,6 +108,7 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
         forces: forces.into_iter().map(acting).collect(),
         stored: value["stored"].as_f64(),
         dissipated: Vec::new(),
+        dissipated_in_bodies: 0.0,
     })
 }
 

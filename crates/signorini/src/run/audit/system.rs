@@ -68,6 +68,7 @@ impl SystemAudit {
             forces,
             stored: Some(result.energy),
             dissipated: dissipated.collect(),
+            dissipated_in_bodies: result.dissipated_in_bodies.iter().sum(),
         };
         let found = audited(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
         self.before = Some((now, state.clone()));

@@ -14,7 +14,8 @@ use crate::run::strain::{self, Strained};
 use signorini_contact::Status;
 use signorini_geometry::Vector;
 use signorini_mechanics::{
-    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
+    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
+    UnstableMaterial, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
@@ -119,6 +120,8 @@ pub fn step_report(
         linear_iterations: solver(result.solved).1,
         residual_history: result.history.clone(),
         energy: Some(result.energy),
+        plastic_dissipation: (system.bodies.iter().any(|b| b.is_inelastic()))
+            .then(|| result.dissipated_in_bodies.iter().sum()),
         stability: result.stability.as_ref().map(|told| stability_report(system, told)),
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
@@ -399,6 +402,22 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
     if let Some((body, strained)) = most_strained(plan, shown) {
         let dimension = if plan.space == Space::ThreeD { 3 } else { 2 };
         strained.warning(body, time, dimension).into_iter().for_each(|w| record.warn_once(w));
+    }
+    for (body, unstable) in plan.system.bodies.iter().zip(&result.unstable_materials) {
+        let Some(UnstableMaterial { x, stretches }) = unstable else { continue };
+        let opening = format!("the material of `{}` is not stable", body.name());
+        if record.warnings.iter().any(|w| w.kind == WarningKind::UnstableMaterial && w.message.starts_with(&opening)) {
+            continue;
+        }
+        let dimension = if plan.space == Space::ThreeD { 3 } else { 2 };
+        let place: Vec<String> = x.iter().take(dimension).map(|v| format!("{v:.4}")).collect();
+        let stretches = stretches.map(|s| format!("{s:.4}")).join(", ");
+        let message = format!(
+            "{opening} at t = {time}: at ({}), with the principal stretches {stretches}, it softens; fit its constants \
+             to data of larger stretches, or use another law",
+            place.join(", ")
+        );
+        record.warnings.push(Warning::new(WarningKind::UnstableMaterial, message).at_time(time).at(vector(x)));
     }
     for curve in &shown.curves {
         let slack = curve.slack_cells();

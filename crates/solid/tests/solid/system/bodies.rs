@@ -37,7 +37,7 @@ fn homogeneous_stretches_of_distorted_cells() {
                     if inner { Point::<2>::new(0.58, 0.43) } else { x }
                 });
                 let mut system = System::default();
-                system.bodies.push(Box::new(solid("bar", mesh, degree, ELASTIC, law)));
+                system.bodies.push(Box::new(solid("bar", mesh, degree, ELASTIC, law.clone())));
                 system.supports.push(hold(0, "left", [Some(0.0), None, None]));
                 system.supports.push(hold(0, "bottom", [None, Some(0.0), None]));
                 system.supports.push(hold(0, "right", [Some(stretch - 1.0), None, None]));
@@ -67,7 +67,13 @@ fn homogeneous_stretches_of_distorted_cells() {
 fn homogeneous_stretches_in_space_in_plane_stress_and_about_an_axis() {
     for (law, [stretch, lateral, stress]) in FREE {
         let mut system = System::default();
-        system.bodies.push(Box::new(solid("bar", cuboid([0.0; 3], [1.0; 3], [1, 1, 2], |x| x), 2, ELASTIC, law)));
+        system.bodies.push(Box::new(solid(
+            "bar",
+            cuboid([0.0; 3], [1.0; 3], [1, 1, 2], |x| x),
+            2,
+            ELASTIC,
+            law.clone(),
+        )));
         system.supports.push(hold(0, "left", [Some(0.0), None, None]));
         system.supports.push(hold(0, "front", [None, Some(0.0), None]));
         system.supports.push(hold(0, "bottom", [None, None, Some(0.0)]));
@@ -79,7 +85,7 @@ fn homogeneous_stretches_in_space_in_plane_stress_and_about_an_axis() {
             let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [2, 2], 1, |x| x);
             let groups = mesh.groups().clone();
             let mut system = System::default();
-            let body = SolidBody::new("bar", Arc::new(mesh), 2, (ELASTIC, law), space, groups).unwrap();
+            let body = SolidBody::new("bar", Arc::new(mesh), 2, (ELASTIC, law.clone()), space, groups).unwrap();
             system.bodies.push(Box::new(body));
             system.supports.push(hold(0, "left", [Some(0.0), None, None]));
             system.supports.push(hold(0, "bottom", [None, Some(0.0), None]));
@@ -101,7 +107,7 @@ fn a_rigid_motion_costs_nothing_at_finite_strain() {
     let mesh = rectangle([0.0, 0.0], [2.0, 1.0], [2, 1], 2, |x| Point::<2>::new(x[0], x[1] + 0.2 * x[0] * x[0]));
     for (law, _) in FREE {
         for degree in 2..=3 {
-            let body = solid("body", mesh.clone(), degree, ELASTIC, law);
+            let body = solid("body", mesh.clone(), degree, ELASTIC, law.clone());
             let modes = body.rigid_modes(&body.start());
             // x turned by a quarter: (-y, x), plus the shift that this needs.
             let identity: Vec<f64> = {
@@ -161,9 +167,9 @@ fn a_moment_has_no_resultant_wherever_its_place_has_moved() {
         x
     });
     let given = v(0.3, -0.2, 0.7);
-    for (law, size) in [(StressLaw::LinearElastic, 0.0), (HELD[1].0, 0.1)] {
+    for (law, size) in [(StressLaw::LinearElastic, 0.0), (HELD[1].0.clone(), 0.1)] {
         for degree in 1..=2 {
-            let body = solid("body", mesh.clone(), degree, ELASTIC, law);
+            let body = solid("body", mesh.clone(), degree, ELASTIC, law.clone());
             let seed = &mut 7u64;
             let configuration = (0..body.unknowns()).map(|_| size * noise(seed)).collect();
             let state = BodyState { configuration, internal: Vec::new() };
@@ -201,7 +207,7 @@ fn a_moment_has_no_resultant_wherever_its_place_has_moved() {
 
 #[test]
 fn an_inverted_cell_is_named() {
-    let body = solid("body", rectangle([0.0, 0.0], [2.0, 1.0], [2, 1], 1, |x| x), 1, ELASTIC, HELD[0].0);
+    let body = solid("body", rectangle([0.0, 0.0], [2.0, 1.0], [2, 1], 1, |x| x), 1, ELASTIC, HELD[0].0.clone());
     let mut state = body.start();
     let pushed = body.dofs().vertex(body.mesh().side_vertices(Side { cell: 1, side: 1 })[0]).unwrap();
     state.configuration[2 * pushed as usize] = -2.5;

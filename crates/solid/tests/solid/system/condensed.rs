@@ -102,7 +102,7 @@ fn eliminated_multipliers_give_the_same_state() {
             ("lower", [0.0, 0.0, 0.0], [10.0, 10.0, 2.0], [24, 24, 5]),
             ("upper", [4.1, 4.2, 2.0], [6.1, 5.9, 3.0], [4, 4, 2]),
         ] {
-            system.bodies.push(Box::new(solid(name, cuboid(low, high, cells, |x| x), 1, ELASTIC, law)));
+            system.bodies.push(Box::new(solid(name, cuboid(low, high, cells, |x| x), 1, ELASTIC, law.clone())));
         }
         let zero = Some(0.0);
         system.supports.push(hold(0, "bottom", [zero; 3]));

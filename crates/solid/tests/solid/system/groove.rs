@@ -24,7 +24,7 @@ fn settled(mu: Option<f64>, law: StressLaw, enforcement: Enforcement) -> (System
             Point::<3>::new(side * across, x[1], x[2] + across * (1.0 + x[2] / 0.5))
         });
         let name = if side > 0.0 { "right block" } else { "left block" };
-        system.bodies.push(Box::new(solid(name, mesh, 1, ELASTIC, law)));
+        system.bodies.push(Box::new(solid(name, mesh, 1, ELASTIC, law.clone())));
     }
     for block in 1..3 {
         system.supports.push(hold(block, "bottom", [Some(0.0); 3]));
@@ -39,7 +39,7 @@ fn settled(mu: Option<f64>, law: StressLaw, enforcement: Enforcement) -> (System
 }
 
 fn check(law: StressLaw, enforcement: Enforcement, mu: Option<f64>) {
-    let (state, result) = settled(mu, law, enforcement);
+    let (state, result) = settled(mu, law.clone(), enforcement);
     let forces = [force(&result, 0), force(&result, 1)];
     // What keeps the ball from moving along the groove carries what the mesh, unlike to both sides, leaves there.
     let total = forces[0] + forces[1] + result.support_forces[2][0];

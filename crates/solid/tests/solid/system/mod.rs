@@ -60,7 +60,7 @@ pub fn solid<const D: usize>(
 ) -> SolidBody<D> {
     let space = if D == 2 { Space::PlaneStrain } else { Space::Solid };
     let groups = mesh.groups().clone();
-    SolidBody::new(name, Arc::new(mesh), degree, (elastic, law), space, groups).unwrap()
+    SolidBody::new(name, Arc::new(mesh), degree, (elastic, law.clone()), space, groups).unwrap()
 }
 
 pub fn part(body: usize, group: &str) -> Part {

@@ -5,7 +5,7 @@ use signorini_fem::DofMap;
 use signorini_fem::block::block;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::*;
-use signorini_solid::{Elastic, SolidBody, Space, StressLaw};
+use signorini_solid::{Elastic, SolidBody, SolidMaterial, Space, StressLaw};
 use std::sync::Arc;
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 2.0, poissons_ratio: 0.3 };
@@ -148,4 +148,40 @@ fn loads_have_their_resultants() {
     near(resultant(None, Load::BodyForce(&vector), &start), [1.2, 2.4, 3.6]);
     let pushed = BodyState { configuration: modes[2].iter().map(|m| 0.1 * m).collect(), ..body.start() };
     near(resultant(Some("bottom"), Load::Springs(Vector::<3>::new(0.0, 5.0, 7.0)), &pushed), [0.0, 0.0, -0.7 * 1.5]);
+}
+
+/// A material that is told point by point, and the same everywhere, has the forces and the tractions of one that is told once: with
+/// the divergence projected and not.
+#[test]
+fn materials_by_position_are_those_of_each_point() {
+    fn check<const D: usize>(space: Space, poissons_ratio: f64, degree: usize) {
+        let elastic = Elastic { youngs_modulus: 2.0, poissons_ratio };
+        let law = (elastic, StressLaw::LinearElastic);
+        let varying = SolidMaterial::varying(law.clone(), Arc::new(move |_| (elastic, StressLaw::LinearElastic)));
+        let axes = std::array::from_fn(|k| [vec![0.0, 0.4, 1.0], vec![0.0, 0.5, 1.5], vec![0.0, 0.8]][k].clone());
+        let mesh = Arc::new(block::<D>(&axes, 1, sheared));
+        let groups = mesh.groups().clone();
+        let of = |material: SolidMaterial| {
+            SolidBody::new("box", Arc::clone(&mesh), degree, material, space, groups.clone()).unwrap()
+        };
+        let (once, by_point) = (of(law.into()), of(varying));
+        let mut state = once.start();
+        state.configuration.iter_mut().enumerate().for_each(|(k, u)| *u = 0.01 * ((k * 7 + 3) % 11) as f64);
+        let (energy, forces) = internal(&once, &state);
+        let (other, others) = internal(&by_point, &state);
+        assert!((energy / other - 1.0).abs() < 1e-12, "{space:?} {energy} {other}");
+        let most = forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        assert!(forces.iter().zip(&others).all(|(a, b)| (a - b).abs() < 1e-12 * most));
+        for site in &once.sites(Some("top"), Sampling::GaussPoints).unwrap() {
+            let [a, b] = [&once, &by_point].map(|body| body.traction(&state, site).unwrap());
+            assert!((a.vector - b.vector).norm() < 1e-12 && a.functions.len() == b.functions.len());
+        }
+    }
+    for degree in [1, 2] {
+        check::<2>(Space::PlaneStrain, 0.3, degree);
+        check::<2>(Space::PlaneStrain, 0.49, degree);
+        check::<2>(Space::PlaneStress, 0.3, degree);
+        check::<3>(Space::Solid, 0.45, degree);
+    }
+    check::<2>(Space::Axisymmetric, 0.3, 2);
 }

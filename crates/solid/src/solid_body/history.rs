@@ -1,0 +1,102 @@
+//! What a solid remembers: the history variables of its law at the quadrature points.
+//!
+//! The internal numbers of a state are the history at the start of its increment, so that every iterate of Newton's method, a
+//! cut-back and a resumed run start from the same. Before the next increment they are renewed from the state that was reached.
+
+use super::SolidBody;
+use super::spatial::spatial;
+use crate::law::{Plastic, StressLaw};
+use crate::material::Elastic;
+use nalgebra::{DVector, Matrix3};
+use rayon::prelude::*;
+use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
+
+/// Where the history of each point stands in the internal numbers.
+#[derive(Clone, Default)]
+pub(super) struct History {
+    /// Variables of a point; none of elastic laws.
+    count: usize,
+    /// The first point of each cell, and the number of all.
+    first: Vec<usize>,
+}
+
+impl History {
+    /// The places of the variables of a law in cells with so many points.
+    pub fn new(law: &StressLaw, points: impl Iterator<Item = usize>) -> Self {
+        let count = law.start().len();
+        let mut first = vec![0];
+        if count > 0 {
+            points.for_each(|n| first.push(first[first.len() - 1] + n));
+        }
+        History { count, first }
+    }
+
+    /// The internal numbers at the start.
+    pub fn start(&self, law: &StressLaw) -> Vec<f64> {
+        law.start().repeat(self.first[self.first.len() - 1])
+    }
+
+    /// The history of a point of a cell.
+    pub fn at<'a>(&self, state: &'a BodyState, cell: usize, q: usize) -> &'a [f64] {
+        if self.count == 0 {
+            return &[];
+        }
+        let start = self.count * (self.first[cell] + q);
+        &state.internal[start..start + self.count]
+    }
+}
+
+impl<const D: usize> SolidBody<D> {
+    /// What the points of a cell of a law with history came to, with their weights; nothing of elastic laws.
+    pub(super) fn plastic_points(&self, cell: usize, state: &BodyState) -> Vec<(f64, Plastic)> {
+        let at = self.gradients(cell, self.table(cell));
+        let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
+        let of = |(q, (elastic, law)): (usize, &(Elastic, StressLaw))| {
+            let f: Matrix3<f64> = at.deformation(q, &displacement);
+            let found = law.plastic(elastic, &f, self.history.at(state, cell, q))?;
+            Some((at.weights[q], found))
+        };
+        at.laws.iter().enumerate().filter_map(of).collect()
+    }
+
+    fn all_plastic_points(&self, state: &BodyState) -> Vec<Vec<(f64, Plastic)>> {
+        (0..self.mesh().cell_count()).into_par_iter().map(|cell| self.plastic_points(cell, state)).collect()
+    }
+}
+
+impl<const D: usize> Constitution for SolidBody<D> {
+    fn law_name(&self) -> Option<String> {
+        Some(self.law().name())
+    }
+
+    fn is_inelastic(&self) -> bool {
+        self.law().has_history()
+    }
+
+    fn renewed(&self, state: &BodyState) -> Vec<f64> {
+        self.all_plastic_points(state).into_iter().flatten().flat_map(|(_, point)| point.history).collect()
+    }
+
+    /// The first point of quadrature of an isotropic hyperelastic law that has lost its stability, cell by cell.
+    fn unstable_material(&self, state: &BodyState) -> Option<UnstableMaterial> {
+        if !matches!(self.law(), StressLaw::Rubber(_)) {
+            return None;
+        }
+        let of = |cell: usize| {
+            let table = self.table(cell);
+            let at = self.gradients(cell, table);
+            let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
+            (0..at.laws.len()).find_map(|q| {
+                let (elastic, law) = &at.laws[q];
+                let stretches = law.unstable(elastic, self.space(), &at.deformation(q, &displacement))?;
+                let x = spatial(&self.body().mesh.position(cell, &table.map[q]));
+                Some(UnstableMaterial { x, stretches })
+            })
+        };
+        (0..self.mesh().cell_count()).into_par_iter().find_map_first(of)
+    }
+
+    fn dissipated(&self, state: &BodyState) -> f64 {
+        self.all_plastic_points(state).iter().flatten().map(|(weight, point)| weight * point.dissipated).sum()
+    }
+}

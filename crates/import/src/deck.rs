@@ -160,14 +160,49 @@ pub struct Fibre {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// Linear at small strain; at finite strain linear in the Green-Lagrange strain.
-    Elastic { youngs_modulus: f64, poissons_ratio: f64 },
-    NeoHooke { youngs_modulus: f64, poissons_ratio: f64, volumetric: Volumetric },
-    MooneyRivlin { c10: f64, c01: f64, bulk_modulus: f64, volumetric: Volumetric, fibre: Option<Fibre> },
-    Yeoh { c: [f64; 3], bulk_modulus: f64, volumetric: Volumetric },
-    Ogden { mu: Vec<f64>, alpha: Vec<f64>, bulk_modulus: f64, volumetric: Volumetric },
-    ArrudaBoyce { mu: f64, locking_stretch: f64, bulk_modulus: f64, volumetric: Volumetric },
-    Orthotropic { youngs_moduli: [f64; 3], poissons_ratios: [f64; 3], shear_moduli: [f64; 3] },
-    Plastic { youngs_modulus: f64, poissons_ratio: f64, hardening: Hardening },
+    Elastic {
+        youngs_modulus: f64,
+        poissons_ratio: f64,
+    },
+    NeoHooke {
+        youngs_modulus: f64,
+        poissons_ratio: f64,
+        volumetric: Volumetric,
+    },
+    MooneyRivlin {
+        c10: f64,
+        c01: f64,
+        bulk_modulus: f64,
+        volumetric: Volumetric,
+        fibre: Option<Fibre>,
+    },
+    Yeoh {
+        c: [f64; 3],
+        bulk_modulus: f64,
+        volumetric: Volumetric,
+    },
+    Ogden {
+        mu: Vec<f64>,
+        alpha: Vec<f64>,
+        bulk_modulus: f64,
+        volumetric: Volumetric,
+    },
+    ArrudaBoyce {
+        mu: f64,
+        locking_stretch: f64,
+        bulk_modulus: f64,
+        volumetric: Volumetric,
+    },
+    Orthotropic {
+        youngs_moduli: [f64; 3],
+        poissons_ratios: [f64; 3],
+        shear_moduli: [f64; 3],
+    },
+    Plastic {
+        youngs_modulus: f64,
+        poissons_ratio: f64,
+        hardening: Hardening,
+    },
     Rigid,
 }
 

@@ -58,6 +58,10 @@ fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
     match extension(file).as_deref() {
         Some("inp") => inp::read(file, what),
         Some("feb") => feb::read(file, what),
-        _ => Err(ImportError::new(file, None, "not a deck: expected a file named .inp (CalculiX, Abaqus) or .feb (FEBio)")),
+        _ => Err(ImportError::new(
+            file,
+            None,
+            "not a deck: expected a file named .inp (CalculiX, Abaqus) or .feb (FEBio)",
+        )),
     }
 }

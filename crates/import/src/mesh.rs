@@ -67,8 +67,7 @@ pub fn build<const D: usize>(deck: &Deck, selection: &Selection) -> Result<Mesh<
             });
         }
     }
-    let cells: Vec<Vec<u32>> =
-        elements.iter().map(|e| e.nodes.iter().map(|node| numbers[node]).collect()).collect();
+    let cells: Vec<Vec<u32>> = elements.iter().map(|e| e.nodes.iter().map(|node| numbers[node]).collect()).collect();
     let listed: Vec<ListedCells> = (elements.iter().zip(&cells))
         .map(|(e, nodes)| ListedCells { shape: e.kind.shape(), nodes: std::slice::from_ref(nodes) })
         .collect();
@@ -98,7 +97,8 @@ pub fn faces_of(deck: &Deck, list: &[String]) -> Result<Vec<Vec<u64>>, String> {
     let mut places: Option<HashMap<u64, usize>> = None;
     let mut out = Vec::new();
     for text in list {
-        let wrong = || format!("`{text}` is no face: expected an element or a set of elements and a face, as in \"12 S3\"");
+        let wrong =
+            || format!("`{text}` is no face: expected an element or a set of elements and a face, as in \"12 S3\"");
         let (of, face) = text.trim().rsplit_once(char::is_whitespace).ok_or_else(wrong)?;
         let face: usize = face.trim_start_matches(['S', 's', 'P', 'p']).parse().map_err(|_| wrong())?;
         let numbers = match of.trim().parse::<u64>() {
@@ -108,14 +108,18 @@ pub fn faces_of(deck: &Deck, list: &[String]) -> Result<Vec<Vec<u64>>, String> {
                 deck.element_sets.get(of.trim()).ok_or_else(known)?.1.clone()
             }
         };
-        let places = places
-            .get_or_insert_with(|| deck.elements.iter().enumerate().map(|(k, e)| (e.number, k)).collect());
+        let places =
+            places.get_or_insert_with(|| deck.elements.iter().enumerate().map(|(k, e)| (e.number, k)).collect());
         for number in numbers {
             let none = || format!("there is no element {number}");
             let element = &deck.elements[*places.get(&number).ok_or_else(none)?];
             let faces = element.kind.faces();
             let corners = face.checked_sub(1).and_then(|k| faces.get(k)).ok_or_else(|| {
-                format!("the element {number}, a {}, has the faces 1 to {}, not {face}", element.kind.shape(), faces.len())
+                format!(
+                    "the element {number}, a {}, has the faces 1 to {}, not {face}",
+                    element.kind.shape(),
+                    faces.len()
+                )
             })?;
             out.push(corners.iter().map(|v| element.nodes[*v]).collect());
         }

@@ -132,13 +132,15 @@ impl Writer<'_> {
             Place::Surface(name) => {
                 let (name, surface) = deck.surfaces.get(name).ok_or_else(|| unknown("surface", name))?;
                 let whole = |face: &Vec<u64>| face.iter().all(|n| body.contained.contains(n));
-                let touches = surface.faces.iter().any(whole) || surface.nodes.iter().any(|n| body.contained.contains(n));
+                let touches =
+                    surface.faces.iter().any(whole) || surface.nodes.iter().any(|n| body.contained.contains(n));
                 touches.then(|| Some(name.to_string()))
             }
             Place::Faces(name, faces) => {
                 let mut own = Vec::new();
                 for face in faces {
-                    let list = crate::mesh::faces_of(deck, std::slice::from_ref(face)).map_err(|m| self_wrong(file, m))?;
+                    let list =
+                        crate::mesh::faces_of(deck, std::slice::from_ref(face)).map_err(|m| self_wrong(file, m))?;
                     if list.iter().any(|f| f.iter().all(|n| body.contained.contains(n))) {
                         own.push(face.clone());
                     }
@@ -271,12 +273,7 @@ fn named(place: &Place, body: Option<&String>) -> String {
 }
 
 /// A name of a group that neither the deck nor the body has.
-fn own_name(
-    wanted: &str,
-    deck: &crate::Deck,
-    nodes: &[(String, Vec<u64>)],
-    sides: &[(String, Vec<String>)],
-) -> String {
+fn own_name(wanted: &str, deck: &crate::Deck, nodes: &[(String, Vec<u64>)], sides: &[(String, Vec<String>)]) -> String {
     let taken: BTreeSet<&str> =
         nodes.iter().map(|(n, _)| n.as_str()).chain(sides.iter().map(|(n, _)| n.as_str())).collect();
     let is_number = wanted.starts_with(|c: char| c.is_ascii_digit());

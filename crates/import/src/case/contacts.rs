@@ -43,11 +43,17 @@ impl Writer<'_> {
                         if body.is_rigid { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
                     };
                     if own.is_rigid && other.is_rigid {
-                        remarks.push(format!("the contact of the rigid bodies `{}` and `{}` is left out", own.name, other.name));
+                        remarks.push(format!(
+                            "the contact of the rigid bodies `{}` and `{}` is left out",
+                            own.name, other.name
+                        ));
                         continue;
                     }
                     let between = if a == b {
-                        remarks.push(format!("the contact of `{slave}` with `{master}` is self-contact of all of `{}`", own.name));
+                        remarks.push(format!(
+                            "the contact of `{slave}` with `{master}` is self-contact of all of `{}`",
+                            own.name
+                        ));
                         format!("self_contact = {}", quoted(&own.name))
                     } else {
                         format!("between = [{}, {}]", part(*a, &slave), part(*b, &master))
@@ -67,6 +73,7 @@ impl Writer<'_> {
     /// Whether a part of a surface is on a body.
     fn touches(&self, body: usize, surface: &Surface) -> bool {
         let own = &self.bodies[body].contained;
-        surface.faces.iter().any(|face| face.iter().all(|n| own.contains(n))) || surface.nodes.iter().any(|n| own.contains(n))
+        surface.faces.iter().any(|face| face.iter().all(|n| own.contains(n)))
+            || surface.nodes.iter().any(|n| own.contains(n))
     }
 }

@@ -89,7 +89,11 @@ impl<'a> Writer<'a> {
                 if self.deck.finite_strain || hyperelastic {
                     out.push_str("strain = \"finite\"\n");
                 }
-                let _ = writeln!(out, "material.{}", material::text(&body.law, body.axes.as_ref(), self.deck.finite_strain));
+                let _ = writeln!(
+                    out,
+                    "material.{}",
+                    material::text(&body.law, body.axes.as_ref(), self.deck.finite_strain)
+                );
             }
             let body = &self.bodies[k];
             let key = if body.is_rigid { "shape.mesh" } else { "mesh.file" };

@@ -9,8 +9,11 @@ pub(super) struct Names(BTreeSet<String>);
 impl Names {
     /// A name like the wanted one that is not given yet.
     pub(super) fn take(&mut self, wanted: &str) -> String {
-        let plain: String =
-            wanted.trim().chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' }).collect();
+        let plain: String = wanted
+            .trim()
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' })
+            .collect();
         let plain = if plain.is_empty() { "unnamed".to_string() } else { plain };
         let name = (1..)
             .map(|k| if k == 1 { plain.clone() } else { format!("{plain}_{k}") })

@@ -30,7 +30,11 @@ fn direction(file: &File, node: Node, name: &str) -> Result<usize, ImportError> 
 
 fn directions(file: &File, node: Node, names: &str) -> Result<Vec<usize>, ImportError> {
     // Rotations of nodes belong to shells.
-    names.split(',').filter(|n| !["u", "v", "w", "sx", "sy", "sz"].contains(&n.trim())).map(|n| direction(file, node, n)).collect()
+    names
+        .split(',')
+        .filter(|n| !["u", "v", "w", "sx", "sy", "sz"].contains(&n.trim()))
+        .map(|n| direction(file, node, n))
+        .collect()
 }
 
 /// Prescribed displacements.
@@ -51,13 +55,15 @@ pub(super) fn boundary(file: &File, section: Node, curves: &Curves, deck: &mut D
                 }
             }
             "fix" => {
-                let names = child(node, "dofs").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
+                let names =
+                    child(node, "dofs").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
                 for k in directions(file, node, &names)? {
                     displacement[k] = Some(Curve::constant(0.0));
                 }
             }
             "prescribed displacement" | "prescribe" => {
-                let stated = child(node, "dof").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
+                let stated =
+                    child(node, "dof").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
                 let amount = child(node, "value").or(child(node, "scale"));
                 let amount = amount.ok_or_else(|| file.wrong(node, "`value` is missing"))?;
                 if file.is_on(node, "relative")? {
@@ -70,7 +76,9 @@ pub(super) fn boundary(file: &File, section: Node, curves: &Curves, deck: &mut D
             other => {
                 return Err(file.wrong(
                     node,
-                    format!("cannot be imported: `{other}`; valid are zero displacement, prescribed displacement, rigid"),
+                    format!(
+                        "cannot be imported: `{other}`; valid are zero displacement, prescribed displacement, rigid"
+                    ),
                 ));
             }
         }
@@ -104,7 +112,8 @@ pub(super) fn loads(file: &File, section: Node, curves: &Curves, deck: &mut Deck
                 (on, LoadKind::NodalForce(vector_value(file, node, vector, curves)?))
             }
             ("nodal_load", _) => {
-                let stated = child(node, "dof").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
+                let stated =
+                    child(node, "dof").map_or_else(|| node.attribute("bc").unwrap_or_default().to_string(), text);
                 let amount = child(node, "scale").or(child(node, "value"));
                 let amount = value(file, amount.ok_or_else(|| file.wrong(node, "`scale` is missing"))?, curves)?;
                 let mut force = [0; 3].map(|_| Curve::constant(0.0));
@@ -114,7 +123,9 @@ pub(super) fn loads(file: &File, section: Node, curves: &Curves, deck: &mut Deck
             (tag, kind) => {
                 return Err(file.wrong(
                     node,
-                    format!("cannot be imported: `{tag}` of type `{kind}`; valid are pressure, traction and nodal loads"),
+                    format!(
+                        "cannot be imported: `{tag}` of type `{kind}`; valid are pressure, traction and nodal loads"
+                    ),
                 ));
             }
         };

@@ -10,12 +10,18 @@ pub(super) fn read(file: &File, section: Node, deck: &mut Deck) -> Result<(), Im
     for node in section.children().filter(Node::is_element) {
         let kind = file.attribute(node, "type")?;
         let friction = match kind {
-            "sliding-node-on-facet" | "sliding-facet-on-facet" | "sliding-elastic" | "sliding_with_gaps"
-            | "facet-to-facet sliding" | "sliding2" => match child(node, "fric_coeff").map(|n| file.number(n)).transpose()? {
+            "sliding-node-on-facet"
+            | "sliding-facet-on-facet"
+            | "sliding-elastic"
+            | "sliding_with_gaps"
+            | "facet-to-facet sliding"
+            | "sliding2" => match child(node, "fric_coeff").map(|n| file.number(n)).transpose()? {
                 Some(mu) if mu > 0.0 => Friction::Coulomb(mu),
                 _ => Friction::None,
             },
-            "tied-node-on-facet" | "tied-facet-on-facet" | "tied-elastic" | "tied" | "facet-to-facet tied" => Friction::Tied,
+            "tied-node-on-facet" | "tied-facet-on-facet" | "tied-elastic" | "tied" | "facet-to-facet tied" => {
+                Friction::Tied
+            }
             other => {
                 return Err(file.wrong(
                     node,

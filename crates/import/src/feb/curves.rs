@@ -24,7 +24,9 @@ fn curve(file: &File, node: Node) -> Result<Curve, ImportError> {
     let is_controller = node.tag_name().name() == "load_controller";
     let kind = node.attribute("type").unwrap_or("loadcurve");
     if is_controller && kind != "loadcurve" {
-        return Err(file.wrong(node, format!("cannot be imported: a controller of type `{kind}`; valid is `loadcurve`")));
+        return Err(
+            file.wrong(node, format!("cannot be imported: a controller of type `{kind}`; valid is `loadcurve`"))
+        );
     }
     // Version 2.5 has the interpolation as its type.
     let interpolate = match (is_controller, child(node, "interpolate")) {
@@ -60,7 +62,10 @@ fn curve(file: &File, node: Node) -> Result<Curve, ImportError> {
         }
         other => Err(file.wrong(
             node,
-            format!("cannot be imported: the interpolation {other} of {} points; valid are LINEAR and STEP", points.len()),
+            format!(
+                "cannot be imported: the interpolation {other} of {} points; valid are LINEAR and STEP",
+                points.len()
+            ),
         )),
     }
 }

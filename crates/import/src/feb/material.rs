@@ -33,7 +33,8 @@ pub(super) fn name_of<'d>(root: Node, deck: &'d Deck, stated: &str) -> Option<(&
     if let Some(found) = deck.materials.get(stated) {
         return Some(found);
     }
-    let materials: Vec<Node> = children(root, "Material").flat_map(|s| children(s, "material").collect::<Vec<_>>()).collect();
+    let materials: Vec<Node> =
+        children(root, "Material").flat_map(|s| children(s, "material").collect::<Vec<_>>()).collect();
     let name = materials.into_iter().find(|m| m.attribute("id") == Some(stated))?.attribute("name")?;
     deck.materials.get(name)
 }
@@ -46,7 +47,9 @@ fn law(file: &File, node: Node) -> Result<Law, ImportError> {
     let optional = |name: &str| child(node, name).map_or(Ok(0.0), |n| file.number(n));
     let volumetric = Volumetric::Logarithmic;
     if let Some(model) = child(node, "pressure_model").filter(|m| !["default", "0", ""].contains(&text(*m).as_str())) {
-        return Err(file.wrong(model, format!("cannot be imported: the pressure model `{}`; valid is `default`", text(model))));
+        return Err(
+            file.wrong(model, format!("cannot be imported: the pressure model `{}`; valid is `default`", text(model)))
+        );
     }
     Ok(match kind {
         "rigid body" => Law::Rigid,
@@ -109,9 +112,7 @@ fn fibre_direction(file: &File, node: Node) -> Result<[f64; 3], ImportError> {
     }
     if let Some(axes) = child(node, "mat_axis") {
         return match axes.attribute("type") {
-            Some("vector") => {
-                file.vector(child(axes, "a").ok_or_else(|| file.wrong(axes, "the axis `a` is missing"))?)
-            }
+            Some("vector") => file.vector(child(axes, "a").ok_or_else(|| file.wrong(axes, "the axis `a` is missing"))?),
             other => Err(file.wrong(axes, format!("cannot be imported: axes of type `{}`", other.unwrap_or("local")))),
         };
     }

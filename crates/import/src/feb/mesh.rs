@@ -66,7 +66,8 @@ fn elements(file: &File, node: Node, deck: &mut Deck) -> Result<(), ImportError>
         "hex20" => Kind::Hexahedron20,
         "hex27" => Kind::Hexahedron27,
         other => {
-            let valid = "valid are tet4, tet10, penta6, penta15, hex8, hex20, hex27; there are no shells, trusses or beams";
+            let valid =
+                "valid are tet4, tet10, penta6, penta15, hex8, hex20, hex27; there are no shells, trusses or beams";
             return Err(file.wrong(node, format!("cannot be imported: elements of type {other}; {valid}")));
         }
     };
@@ -114,7 +115,11 @@ fn surface(file: &File, node: Node, deck: &mut Deck) -> Result<(), ImportError> 
         let vertices = match entry.tag_name().name() {
             "tri3" | "tri6" | "tri7" => 3,
             "quad4" | "quad8" | "quad9" => 4,
-            other => return Err(file.wrong(entry, format!("`{other}` is no face: valid are tri3, tri6, quad4, quad8, quad9"))),
+            other => {
+                return Err(
+                    file.wrong(entry, format!("`{other}` is no face: valid are tri3, tri6, quad4, quad8, quad9"))
+                );
+            }
         };
         let list = file.whole(entry, &text(entry))?;
         if list.len() < vertices {

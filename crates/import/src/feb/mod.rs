@@ -18,8 +18,8 @@ const WITHOUT_INFLUENCE: [&str; 4] = ["Globals", "Output", "Material", "LoadData
 
 /// Reads a file.
 pub(crate) fn read(path: &Path, what: What) -> Result<Deck, ImportError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| ImportError::new(path, None, format!("cannot be read: {e}")))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|e| ImportError::new(path, None, format!("cannot be read: {e}")))?;
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
     let document = roxmltree::Document::parse_with_options(&text, options)
         .map_err(|e| ImportError::new(path, e.pos().row as usize, format!("not XML: {e}")))?;
@@ -78,12 +78,7 @@ pub(crate) fn read(path: &Path, what: What) -> Result<Deck, ImportError> {
 }
 
 /// A section of the file or of a step.
-fn part(
-    file: &File,
-    section: roxmltree::Node,
-    curves: &curves::Curves,
-    deck: &mut Deck,
-) -> Result<(), ImportError> {
+fn part(file: &File, section: roxmltree::Node, curves: &curves::Curves, deck: &mut Deck) -> Result<(), ImportError> {
     match section.tag_name().name() {
         "Module" => match section.attribute("type").unwrap_or("solid") {
             "solid" => Ok(()),
@@ -111,7 +106,9 @@ fn control(file: &File, section: roxmltree::Node, deck: &mut Deck) -> Result<(),
     if let Some(node) = analysis {
         let kind = node.attribute("type").map_or_else(|| xml::text(node), str::to_string).to_uppercase();
         if !["STATIC", "STEADY-STATE", "0", ""].contains(&kind.as_str()) {
-            return Err(file.wrong(node, format!("cannot be imported: the analysis {kind}; dynamics do not exist here")));
+            return Err(
+                file.wrong(node, format!("cannot be imported: the analysis {kind}; dynamics do not exist here"))
+            );
         }
     }
     let number = |name: &str| -> Result<f64, ImportError> {

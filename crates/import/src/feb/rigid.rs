@@ -6,7 +6,7 @@ use super::material::name_of;
 use super::xml::{File, child, children, text};
 use crate::ImportError;
 use crate::curve::Curve;
-use crate::deck::{Deck, Place, RigidMotion, Support};
+use crate::deck::{Deck, RigidMotion, Support};
 use roxmltree::Node;
 
 /// The names of the components: displacements, then rotations.
@@ -80,7 +80,9 @@ pub(super) fn read(file: &File, section: Node, curves: &Curves, deck: &mut Deck)
             (tag, kind) => {
                 return Err(file.wrong(
                     node,
-                    format!("cannot be imported: `{tag}` of type `{kind}`; rigid bodies are fixed, moved or pushed here"),
+                    format!(
+                        "cannot be imported: `{tag}` of type `{kind}`; rigid bodies are fixed, moved or pushed here"
+                    ),
                 ));
             }
         }

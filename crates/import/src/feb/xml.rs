@@ -55,7 +55,8 @@ impl File<'_> {
 
     pub(super) fn vector(&self, node: Node) -> Result<[f64; 3], ImportError> {
         let numbers = self.numbers(node)?;
-        <[f64; 3]>::try_from(numbers).map_err(|_| self.wrong(node, format!("expected three numbers, found `{}`", text(node))))
+        <[f64; 3]>::try_from(numbers)
+            .map_err(|_| self.wrong(node, format!("expected three numbers, found `{}`", text(node))))
     }
 
     /// Numbers of nodes or elements.

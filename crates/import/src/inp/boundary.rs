@@ -66,7 +66,9 @@ impl NodeHistories {
         Some(&self.list.get(&node)?.get(&direction)?.1)
     }
 
+    /// Sets a history; nodes that are named one by one have no name in common but `nodes`.
     pub(super) fn set(&mut self, node: u64, direction: usize, target: &str, curve: Curve) {
+        let target = if target.parse::<u64>().is_ok() { "nodes" } else { target };
         self.list.entry(node).or_default().insert(direction, (target.to_string(), curve));
     }
 

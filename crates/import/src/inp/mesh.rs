@@ -14,7 +14,9 @@ pub(super) fn read(card: &Card, deck: &mut Deck, what: What) -> Result<(), Impor
         "ELEMENT" => elements(card, deck, what),
         "NSET" => node_set(card, deck),
         "ELSET" => element_set(card, deck),
-        "SYSTEM" => Err(card.wrong(None, "nodes in another system of coordinates are not read; write global coordinates")),
+        "SYSTEM" => {
+            Err(card.wrong(None, "nodes in another system of coordinates are not read; write global coordinates"))
+        }
         "PART" | "ASSEMBLY" | "INSTANCE" => Err(card.wrong(
             None,
             "decks with parts and assemblies are not read: write a flat deck (in Abaqus/CAE, Model > Edit attributes > \
@@ -46,7 +48,8 @@ fn nodes(card: &Card, deck: &mut Deck) -> Result<(), ImportError> {
 
 /// The shape of a type of elements, the space that it is for, and what is different here.
 fn kind(name: &str) -> Option<(Kind, Space, &'static str)> {
-    const REDUCED: &str = "reduced integration: the cells here are integrated fully, with a projection of the dilatation";
+    const REDUCED: &str =
+        "reduced integration: the cells here are integrated fully, with a projection of the dilatation";
     const MODES: &str = "incompatible modes: the cells here have none; for bending set `degree = 2`";
     const MIXED: &str = "a pressure of its own: the cells here have a projection of the dilatation in its place";
     let name = name.to_uppercase();
@@ -111,7 +114,8 @@ fn elements(card: &Card, deck: &mut Deck, what: What) -> Result<(), ImportError>
             pending.push(card.whole(data, field, "the number of an element or node")?);
         }
         if pending.len() > kind.node_count() + 1 {
-            let message = format!("the element {} of type {name} has more than {} nodes", pending[0], kind.node_count());
+            let message =
+                format!("the element {} of type {name} has more than {} nodes", pending[0], kind.node_count());
             return Err(card.wrong(data, message));
         }
         if pending.len() == kind.node_count() + 1 {
@@ -137,7 +141,8 @@ fn numbers(card: &Card, known: impl Fn(&str) -> Option<Vec<u64>>) -> Result<Vec<
         if card.has("GENERATE") {
             let [first, last] = [0, 1].map(|k| card.whole(data, k, "a number"));
             let (first, last) = (first?, last?);
-            let by = if data.fields.get(2).is_some_and(|f| !f.is_empty()) { card.whole(data, 2, "a number")? } else { 1 };
+            let by =
+                if data.fields.get(2).is_some_and(|f| !f.is_empty()) { card.whole(data, 2, "a number")? } else { 1 };
             if by == 0 || last < first {
                 return Err(card.wrong(data, "expected first, last, increment in ascending order"));
             }
@@ -147,7 +152,9 @@ fn numbers(card: &Card, known: impl Fn(&str) -> Option<Vec<u64>>) -> Result<Vec<
         for field in data.fields.iter().filter(|f| !f.is_empty()) {
             match field.parse() {
                 Ok(number) => out.push(number),
-                Err(_) => out.extend(known(field).ok_or_else(|| card.wrong(data, format!("there is no set `{field}`")))?),
+                Err(_) => {
+                    out.extend(known(field).ok_or_else(|| card.wrong(data, format!("there is no set `{field}`")))?)
+                }
             }
         }
     }

@@ -2,6 +2,9 @@
 
 mod boundary;
 mod card;
+mod conditions;
+mod contact;
+mod finish;
 mod material;
 mod mesh;
 mod model;

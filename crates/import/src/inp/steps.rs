@@ -84,7 +84,8 @@ impl Histories {
         let wanted = ((time / increment) - 1e-9).ceil() as usize;
         let count = if card.has("DIRECT") { wanted } else { wanted.min(MOST_INCREMENTS) };
         self.analysis = Some((time, count));
-        Ok((count < wanted).then(|| format!("*{}: {count} increments in place of {wanted}; they are cut where needed", card.keyword)))
+        Ok((count < wanted)
+            .then(|| format!("*{}: {count} increments in place of {wanted}; they are cut where needed", card.keyword)))
     }
 
     /// `OP=NEW` removes all earlier conditions of a kind.

@@ -1,5 +1,6 @@
 //! A deck in plain types.
 
+use crate::adjust::Adjustment;
 use crate::curve::Curve;
 use crate::element::{Kind, Space};
 use std::collections::BTreeMap;
@@ -274,6 +275,7 @@ pub struct Deck {
     /// Motions of rigid parts, by the name of their material.
     pub rigid: Sets<RigidMotion>,
     pub contacts: Vec<ContactPair>,
+    pub adjustments: Vec<Adjustment>,
     pub supports: Vec<Support>,
     pub loads: Vec<Load>,
     pub steps: Vec<Step>,

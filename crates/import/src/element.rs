@@ -54,6 +54,14 @@ const HEXAHEDRON_EDGES: [usize; 12] = [8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13,
 const WEDGE_EDGES: [usize; 9] = [6, 8, 12, 7, 13, 14, 9, 11, 10];
 const TETRAHEDRON_EDGES: [usize; 6] = [4, 5, 6, 7, 9, 8];
 
+/// The vertices between which the nodes of order 2 lie, in the order of Gmsh.
+const HEXAHEDRON_MIDDLES: [[usize; 2]; 12] =
+    [[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]];
+const WEDGE_MIDDLES: [[usize; 2]; 9] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]];
+const TETRAHEDRON_MIDDLES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [1, 3]];
+const QUADRILATERAL_MIDDLES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
+const TRIANGLE_MIDDLES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
 /// Faces by vertices, in the order of Abaqus and CalculiX.
 const TETRAHEDRON_FACES: [&[usize]; 4] = [&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]];
 const HEXAHEDRON_FACES: [&[usize]; 6] =
@@ -98,6 +106,18 @@ impl Kind {
 
     pub fn dimension(self) -> usize {
         if matches!(self.shape(), "triangle" | "quadrilateral") { 2 } else { 3 }
+    }
+
+    /// The vertices of the edges in whose middle there are nodes, in the order of these nodes.
+    pub fn edges(self) -> &'static [[usize; 2]] {
+        match self {
+            Kind::Hexahedron20 | Kind::Hexahedron27 => &HEXAHEDRON_MIDDLES,
+            Kind::Wedge15 => &WEDGE_MIDDLES,
+            Kind::Tetrahedron10 => &TETRAHEDRON_MIDDLES,
+            Kind::Quadrilateral8 => &QUADRILATERAL_MIDDLES,
+            Kind::Triangle6 => &TRIANGLE_MIDDLES,
+            _ => &[],
+        }
     }
 
     /// The vertices of each face, in the order of Abaqus and CalculiX.

@@ -4,6 +4,7 @@
 //! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). A keyword that is not known is an error
 //! with its line; what is left out or changed is a [`Remark`] of the deck.
 
+pub mod adjust;
 pub mod case;
 mod components;
 pub mod curve;

@@ -4,6 +4,7 @@
 //! 20 nodes has 27. A set of nodes holds all faces and edges whose nodes are all in it.
 
 use crate::ImportError;
+use crate::adjust::{Adjustment, moved};
 use crate::components::components;
 use crate::deck::{Deck, Element};
 use signorini_fem::gmsh::{GmshFile, ListedCells};
@@ -21,6 +22,8 @@ pub struct Selection {
     pub nodes: Vec<(String, Vec<u64>)>,
     /// Further groups by their faces: an element or a set of elements, and the number of the face, as in `12 S3`.
     pub sides: Vec<(String, Vec<String>)>,
+    /// Nodes that are moved onto surfaces.
+    pub adjust: Vec<Adjustment>,
 }
 
 /// The places of the selected elements in the list of the deck.
@@ -54,11 +57,15 @@ pub fn build<const D: usize>(deck: &Deck, selection: &Selection) -> Result<Mesh<
     if elements.is_empty() {
         return Err(wrong("there are no elements".into()));
     }
+    let mut positions: BTreeMap<u64, [f64; 3]> = BTreeMap::new();
+    for adjustment in &selection.adjust {
+        positions.extend(moved(deck, adjustment).map_err(|m| wrong(format!("adjust: {m}")))?);
+    }
     let mut numbers: HashMap<u64, u32> = HashMap::new();
     let mut points = Vec::new();
     for element in &elements {
         for node in &element.nodes {
-            let Some(x) = deck.nodes.get(node) else {
+            let Some(x) = positions.get(node).or(deck.nodes.get(node)) else {
                 return Err(wrong(format!("the element {} has the node {node}, which does not exist", element.number)));
             };
             numbers.entry(*node).or_insert_with(|| {

@@ -35,7 +35,7 @@ pub enum Shape {
     /// A triangle mesh from an STL, OBJ or PLY file.
     Stl(SurfaceFile),
     /// The boundary of a mesh of cells in space from a file, such as a rigid part of a deck. Curved faces become flat.
-    Mesh(MeshFile),
+    File(MeshFile),
     /// A triangle mesh from arrays.
     Triangles(TriangleArrays),
     /// The body below measured heights on a grid of points, from CSV, NPY or 16-bit TIFF.

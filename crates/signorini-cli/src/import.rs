@@ -18,7 +18,8 @@ pub fn import(deck: &Path, output: Option<PathBuf>, json: bool) -> u8 {
             DONE
         }
         Ok(text) => {
-            let remarks: Vec<&str> = text.lines().take_while(|l| l.starts_with('#')).filter_map(|l| l.strip_prefix("# - ")).collect();
+            let remarks: Vec<&str> =
+                text.lines().take_while(|l| l.starts_with('#')).filter_map(|l| l.strip_prefix("# - ")).collect();
             if json {
                 say!("{}", json!({"case": output.display().to_string(), "remarks": remarks}));
             } else {

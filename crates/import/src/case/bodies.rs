@@ -2,8 +2,10 @@
 
 use super::Names;
 use crate::ImportError;
+use crate::adjust::Adjustment;
 use crate::components::components;
 use crate::deck::{Deck, Law};
+use signorini_geometry::Point;
 use std::collections::{BTreeSet, HashMap};
 
 /// A body of the case.
@@ -19,9 +21,44 @@ pub(super) struct Body {
     pub(super) material: String,
     pub(super) axes: Option<[[f64; 3]; 2]>,
     pub(super) is_rigid: bool,
+    /// Of a rigid body that is touched on a flat surface: a point of it and the outward normal.
+    pub(super) plane: Option<[[f64; 3]; 2]>,
     /// Groups of nodes and faces that supports and loads need.
     pub(super) nodes: Vec<(String, Vec<u64>)>,
     pub(super) sides: Vec<(String, Vec<String>)>,
+    pub(super) adjust: Vec<Adjustment>,
+}
+
+/// Sine of the angle, and distance relative to the size, within which a surface is flat.
+const FLAT: f64 = 1e-6;
+
+/// The plane in which all surfaces lie on which a rigid body is touched, if it does not turn.
+pub(super) fn plane(deck: &Deck, body: &Body) -> Option<[[f64; 3]; 2]> {
+    let motion = deck.rigid.get(&body.material).map(|(_, motion)| motion);
+    let turns = |c: &Option<crate::curve::Curve>| c.as_ref().is_none_or(|c| c.as_constant() != Some(0.0));
+    if deck.space().dimension() == 2 || motion.is_some_and(|m| m.components[3..].iter().any(turns)) {
+        return None;
+    }
+    let surfaces = deck.contacts.iter().flat_map(|pair| [&pair.slave, &pair.master]);
+    let faces: Vec<&Vec<u64>> = surfaces
+        .filter_map(|name| deck.surfaces.get(name))
+        .flat_map(|(_, surface)| &surface.faces)
+        .filter(|face| face.iter().all(|n| body.contained.contains(n)))
+        .collect();
+    let at = |n: &u64| Point::<3>::from(deck.nodes[n]);
+    let first = faces.first()?;
+    let [a, b, c] = [0, 1, 2].map(|k| at(&first[k]));
+    let mut normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+    let size = faces.iter().flat_map(|f| f.iter()).map(|n| (at(n) - a).norm()).fold(0.0, f64::max);
+    let is_flat = |n: &u64| (at(n) - a).dot(&normal).abs() <= FLAT * size;
+    if !faces.iter().flat_map(|face| face.iter()).all(is_flat) {
+        return None;
+    }
+    let middle = body.contained.iter().map(at).sum::<Point<3>>() / body.contained.len() as f64;
+    if (middle - a).dot(&normal) > 0.0 {
+        normal = -normal;
+    }
+    Some([a.into(), (normal + Point::<3>::zeros()).into()])
 }
 
 /// The bodies of a deck, in the order of their first elements.
@@ -89,11 +126,13 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
             group: group.filter(|_| all.len() > 1).map(str::to_string),
             connected_to: (group.is_none() && all.len() > 1).then_some(first_node),
             is_rigid: law == Law::Rigid,
+            plane: None,
             law,
             material: deck.sections[*first].material.clone(),
             axes: deck.sections[*first].axes,
             nodes: Vec::new(),
             sides: Vec::new(),
+            adjust: Vec::new(),
         });
     }
     Ok(out)

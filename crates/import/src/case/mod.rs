@@ -11,6 +11,7 @@ mod names;
 mod values;
 
 use crate::ImportError;
+use crate::adjust::Adjustment;
 use crate::deck::Deck;
 use bodies::{Body, bodies};
 use names::Names;
@@ -38,7 +39,18 @@ impl<'a> Writer<'a> {
     fn new(deck: &'a Deck, file: &'a str) -> Result<Self, ImportError> {
         let remarks = deck.remarks.iter().map(|r| format!("line {}: {}", r.line, r.message)).collect();
         let end = deck.steps.last().map_or(1.0, |s| s.to);
-        Ok(Self { deck, file, bodies: bodies(deck)?, values: Values::new(end), remarks })
+        let mut bodies = bodies(deck)?;
+        for body in bodies.iter_mut().filter(|b| b.is_rigid) {
+            body.plane = bodies::plane(deck, body);
+        }
+        for adjustment in &deck.adjustments {
+            let Some((_, surface)) = deck.surfaces.get(&adjustment.surface) else { continue };
+            let nodes = || surface.nodes.iter().chain(surface.faces.iter().flatten());
+            for body in bodies.iter_mut().filter(|b| nodes().any(|n| b.contained.contains(n))) {
+                body.adjust.push(adjustment.clone());
+            }
+        }
+        Ok(Self { deck, file, bodies, values: Values::new(end), remarks })
     }
 
     fn remark(&mut self, message: String) {
@@ -96,7 +108,13 @@ impl<'a> Writer<'a> {
                 );
             }
             let body = &self.bodies[k];
-            let key = if body.is_rigid { "shape.mesh" } else { "mesh.file" };
+            if let Some([point, normal]) = body.plane {
+                let _ = writeln!(out, "shape.plane = {{ point = {point:?}, normal = {normal:?} }}");
+                let message = format!("the flat surface of the rigid body `{}` is a plane without end", body.name);
+                self.remark(message);
+                continue;
+            }
+            let key = if body.is_rigid { "shape.file" } else { "mesh.file" };
             let _ = writeln!(out, "\n[bodies.{}.{kind}.{key}]\nfile = {}", body.name, quoted(self.file));
             if let Some(group) = &body.group {
                 let _ = writeln!(out, "group = {}", quoted(group));
@@ -110,9 +128,20 @@ impl<'a> Writer<'a> {
             for (name, sides) in &body.sides {
                 let _ = writeln!(out, "sides.{} = {}", key_of(name), wrapped(sides.iter().map(|s| quoted(s))));
             }
+            if !body.adjust.is_empty() {
+                let list: Vec<String> = body.adjust.iter().map(adjustment).collect();
+                let _ = writeln!(out, "adjust = [{}]", list.join(", "));
+            }
         }
         out
     }
+}
+
+/// An entry of `adjust`.
+fn adjustment(of: &Adjustment) -> String {
+    let within = of.within.map_or(String::new(), |within| format!(", within = {within:?}"));
+    let nodes = of.nodes.as_ref().map_or(String::new(), |set| format!(", nodes = {}", quoted(set)));
+    format!("{{ surface = {}, to = {}{within}{nodes} }}", quoted(&of.surface), quoted(&of.to))
 }
 
 /// A text in quotes.

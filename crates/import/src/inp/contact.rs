@@ -3,6 +3,7 @@
 use super::card::{Card, Data};
 use super::model::Model;
 use crate::ImportError;
+use crate::adjust::Adjustment;
 use crate::deck::{ContactPair, Friction};
 
 impl Model {
@@ -42,13 +43,17 @@ impl Model {
 
     pub(super) fn contact_pair(&mut self, card: &Card) -> Result<(), ImportError> {
         self.only(card, &["INTERACTION", "TYPE", "SMALLSLIDING", "ADJUST"]);
-        if card.has("ADJUST") {
-            let message = format!("*{}, ADJUST: nodes are not moved to the surface", card.keyword);
-            self.deck.remark(card.line, message);
-        }
         let interaction = card.value("INTERACTION").map(str::to_uppercase);
         for data in &card.data {
             let pair = self.pair(card, data, Friction::None)?;
+            if let Some(adjust) = card.value("ADJUST") {
+                let (within, nodes) = match adjust.parse::<f64>() {
+                    Ok(within) => (Some(within), None),
+                    Err(_) => (None, Some(self.node_set(card, adjust)?)),
+                };
+                let (surface, to) = (pair.slave.clone(), pair.master.clone());
+                self.deck.adjustments.push(Adjustment { surface, to, within, nodes });
+            }
             self.contacts.push((pair, interaction.clone()));
         }
         Ok(())
@@ -60,6 +65,12 @@ impl Model {
             self.contacts.push((pair, None));
         }
         Ok(())
+    }
+
+    /// The name of a set of nodes as the deck has it.
+    fn node_set(&self, card: &Card, name: &str) -> Result<String, ImportError> {
+        let none = || card.wrong(None, format!("there is no set of nodes `{name}`"));
+        self.deck.node_sets.get(name).map(|(name, _)| name.to_string()).ok_or_else(none)
     }
 
     /// The two surfaces of a line: slave, master.

@@ -34,9 +34,12 @@ fn version_4(materials: &str, rest: &str) -> String {
     )
 }
 
-const RUBBER: &str = "<material id=\"1\" name=\"rubber\" type=\"Ogden\"><c1>2</c1><m1>6.8</m1><c2>0</c2><k>100</k></material>";
-const PLATE: &str = "<material id=\"2\" name=\"plate\" type=\"rigid body\"><center_of_mass>0.5,0.5,1</center_of_mass></material>";
-const BOUNDARY: &str = "<Boundary><bc name=\"b\" node_set=\"bottom\" type=\"zero displacement\"><x_dof>1</x_dof><y_dof>1</y_dof>
+const RUBBER: &str =
+    "<material id=\"1\" name=\"rubber\" type=\"Ogden\"><c1>2</c1><m1>6.8</m1><c2>0</c2><k>100</k></material>";
+const PLATE: &str =
+    "<material id=\"2\" name=\"plate\" type=\"rigid body\"><center_of_mass>0.5,0.5,1</center_of_mass></material>";
+const BOUNDARY: &str =
+    "<Boundary><bc name=\"b\" node_set=\"bottom\" type=\"zero displacement\"><x_dof>1</x_dof><y_dof>1</y_dof>
 <z_dof>1</z_dof></bc></Boundary>";
 const CONTACT: &str = "<Contact><contact name=\"c\" type=\"sliding-elastic\" surface_pair=\"pair\"><penalty>5</penalty>
 <fric_coeff>0.4</fric_coeff></contact></Contact>";
@@ -63,7 +66,7 @@ fn rigid_parts_move_as_they_are_told() {
     assert_eq!(motion.components[2], Some(Curve::through([[0.0, 0.0], [1.0, -0.6], [2.0, -0.6]])));
     let case = case_of("pressed.feb", &all);
     for line in [
-        "[bodies.high.rigid.shape.mesh]",
+        "shape.plane = { point = [0.0, 0.0, 1.0], normal = [0.0, 0.0, -1.0] }",
         "motion.prescribed = { displacement = [0.0, 0.0, \"curve_1(t)\"] }",
         "t = [0.0, 1.0, 2.0]",
         "material.ogden = { mu = [1.0], alpha = [6.8], bulk_modulus = 100.0, volumetric = \"logarithmic\" }",
@@ -108,8 +111,16 @@ fn the_format_2_5() {
 fn what_cannot_be_imported_is_named_with_its_line() {
     let materials = format!("{RUBBER}{PLATE}");
     for (materials, rest, told) in [
-        ("<material id=\"1\" name=\"rubber\" type=\"biphasic\"/>", "", "<material>: cannot be imported: the material `biphasic`"),
-        (&*materials, "<Constraints><constraint/></Constraints>", "<Constraints>: cannot be imported: the section `Constraints`"),
+        (
+            "<material id=\"1\" name=\"rubber\" type=\"biphasic\"/>",
+            "",
+            "<material>: cannot be imported: the material `biphasic`",
+        ),
+        (
+            &*materials,
+            "<Constraints><constraint/></Constraints>",
+            "<Constraints>: cannot be imported: the section `Constraints`",
+        ),
         (
             &*materials,
             "<Contact><contact type=\"sticky\" surface_pair=\"pair\"/></Contact>",

@@ -85,7 +85,7 @@ fn a_deck_becomes_bodies_supports_loads_and_contacts() {
     assert_eq!((step.to, step.increments), (1.0, 4));
     let written = case_of("cubes.inp", &text);
     for line in [
-        "# - line 44: *SURFACE BEHAVIOR, LINEAR: its stiffness is left out; here surfaces do not penetrate",
+        "# - line 42: *SURFACE BEHAVIOR, LINEAR: its stiffness is left out; here surfaces do not penetrate",
         "material.linear_elastic = { youngs_modulus = 210000.0, poissons_ratio = 0.3 }",
         "connected_to = 11",
         "sides.pressure = [\"2 2\"]",
@@ -163,7 +163,8 @@ fn laws_of_materials() {
     assert_eq!((mu, alpha, bulk_modulus), (vec![1.0, 3.0], vec![2.0, -2.0], 200.0));
     let Law::Yeoh { c, .. } = law("*HYPERELASTIC, YEOH\n.5, -.01, .001, .02") else { panic!() };
     assert_eq!(c, [0.5, -0.01, 0.001]);
-    let Law::Plastic { hardening, .. } = law("*ELASTIC\n100., .3\n*PLASTIC, HARDENING=KINEMATIC\n2., 0.\n3., .1") else {
+    let Law::Plastic { hardening, .. } = law("*ELASTIC\n100., .3\n*PLASTIC, HARDENING=KINEMATIC\n2., 0.\n3., .1")
+    else {
         panic!()
     };
     assert_eq!(format!("{hardening:?}"), "Kinematic { yield_stress: 2.0, modulus: 10.0 }");
@@ -174,11 +175,26 @@ fn what_cannot_be_imported_is_named_with_its_line() {
     let line_of = |text: &str, what: &str| text.lines().position(|l| l.contains(what)).map(|k| k + 1);
     for (model, steps, at, told) in [
         ("*FANCY CARD", STEP, "*FANCY", "*FANCY CARD: this keyword is not known"),
-        ("", "*STEP\n*HEAT TRANSFER\n*END STEP", "*HEAT", "*HEAT TRANSFER: cannot be imported: heat transfer does not exist here"),
+        (
+            "",
+            "*STEP\n*HEAT TRANSFER\n*END STEP",
+            "*HEAT",
+            "*HEAT TRANSFER: cannot be imported: heat transfer does not exist here",
+        ),
         ("*NSET, NSET=N\n1, 99, Nothing", STEP, "Nothing", "*NSET: there is no set `Nothing`"),
         ("*BOUNDARY\n99, 1", STEP, "99, 1", "*BOUNDARY: there is no node 99"),
-        ("*ELEMENT, TYPE=S4\n9, 1, 2, 3, 4", STEP, "TYPE=S4", "*ELEMENT: elements of type S4 are not known here: valid are"),
-        ("*SURFACE, NAME=Odd\n1, S7", STEP, "1, S7", "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7"),
+        (
+            "*ELEMENT, TYPE=S4\n9, 1, 2, 3, 4",
+            STEP,
+            "TYPE=S4",
+            "*ELEMENT: elements of type S4 are not known here: valid are",
+        ),
+        (
+            "*SURFACE, NAME=Odd\n1, S7",
+            STEP,
+            "1, S7",
+            "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7",
+        ),
         ("*EQUATION\n2\n15, 3, 1., 16, 3, -2.", STEP, "\n2", "*EQUATION: cannot be imported: only equal displacements"),
         ("*TIE, NAME=T\nHigh, Low", STEP, "High, Low", "`High` and `Low` are tied: cannot be imported"),
     ] {

@@ -4,6 +4,7 @@ use crate::written;
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Mesh};
 use signorini_geometry::Point;
+use signorini_import::adjust::Adjustment;
 use signorini_import::element::Kind;
 use signorini_import::mesh::{Selection, build};
 use signorini_import::read_mesh;
@@ -76,23 +77,17 @@ fn volume(mesh: &Mesh<3>) -> f64 {
     points.iter().map(|(xi, w)| w * jacobian(xi, &mut at)).sum()
 }
 
-const KINDS: [Kind; 6] = [
-    Kind::Hexahedron8,
-    Kind::Hexahedron20,
-    Kind::Wedge6,
-    Kind::Wedge15,
-    Kind::Tetrahedron4,
-    Kind::Tetrahedron10,
-];
+const KINDS: [Kind; 6] =
+    [Kind::Hexahedron8, Kind::Hexahedron20, Kind::Wedge6, Kind::Wedge15, Kind::Tetrahedron4, Kind::Tetrahedron10];
 
-/// Every node in its place: otherwise the map is folded, and the volume another one. The map `bent` keeps volumes but for
-/// `1 - 0.02 y + …`; its Jacobian is integrated exactly.
+/// Every node in its place: otherwise the map is folded, or not that of the vertices, or not the bent one.
 #[test]
 fn nodes_of_all_elements_are_in_their_places() {
     for kind in KINDS {
         let flat = mesh_of(&deck_of(kind, |x| x), &Selection::default());
         flat.check().unwrap();
-        let exact = [1.0, 0.5, 1.0 / 6.0][["hexahedron", "wedge", "tetrahedron"].iter().position(|s| *s == kind.shape()).unwrap()];
+        let exact = [1.0, 0.5, 1.0 / 6.0]
+            [["hexahedron", "wedge", "tetrahedron"].iter().position(|s| *s == kind.shape()).unwrap()];
         assert!((volume(&flat) - exact).abs() < 1e-14, "{kind:?}: {}", volume(&flat));
         if flat.map(0).order() == 1 {
             continue;
@@ -186,7 +181,9 @@ fn sets_hold_faces_edges_and_nodes() {
 #[test]
 fn connected_parts_are_selected_by_a_node() {
     let one = deck_of(Kind::Tetrahedron4, |x| x);
-    let two = format!("{one}*NODE\n1, 5, 0, 0\n2, 6, 0, 0\n3, 5, 1, 0\n4, 5, 0, 1\n*ELEMENT, TYPE=C3D4, ELSET=E\n8, 1, 2, 3, 4\n");
+    let two = format!(
+        "{one}*NODE\n1, 5, 0, 0\n2, 6, 0, 0\n3, 5, 1, 0\n4, 5, 0, 1\n*ELEMENT, TYPE=C3D4, ELSET=E\n8, 1, 2, 3, 4\n"
+    );
     let select = |node| Selection { connected_to: Some(node), ..Selection::default() };
     for (node, left) in [(3, 5.0), (104, 0.0)] {
         let mesh = mesh_of(&two, &select(node));
@@ -196,4 +193,36 @@ fn connected_parts_are_selected_by_a_node() {
     let (_folder, path) = written(&[("mesh.inp", &two)]);
     let error = build::<3>(&read_mesh(&path).unwrap(), &select(99)).unwrap_err();
     assert_eq!(error.message, "no element of the body has the node 99");
+}
+
+/// Nodes of a surface, also those in the middle of its edges, are moved to the closest points of another one.
+#[test]
+fn nodes_are_moved_onto_a_surface() {
+    let one = deck_of(Kind::Hexahedron20, |x| x);
+    // A plate below whose upper face is at z = -0.01, inclined by 0.02 along x.
+    let plate = "*NODE\n1, -1, -1, -1\n2, 2, -1, -1\n3, 2, 2, -1\n4, -1, 2, -1
+5, -1, -1, -0.03\n6, 2, -1, 0.03\n7, 2, 2, 0.03\n8, -1, 2, -0.03
+*ELEMENT, TYPE=C3D8, ELSET=Plate\n8, 1, 2, 3, 4, 5, 6, 7, 8\n*SURFACE, NAME=Upper\nPlate, S2\n";
+    let text = format!("{one}{plate}*NSET, NSET=One\n101\n");
+    let select = |within, nodes: Option<&str>| Selection {
+        group: Some("E".into()),
+        adjust: vec![Adjustment { surface: "S1".into(), to: "Upper".into(), within, nodes: nodes.map(str::to_string) }],
+        ..Selection::default()
+    };
+    // How far the nodes of the lower face are from the plane z = 0.02 x - 0.01.
+    let left = |selection: &Selection| -> Vec<f64> {
+        let mesh = mesh_of(&text, selection);
+        let gap = |x: &Point<3>| (x[2] - 0.02 * x[0] + 0.01).abs() / 1.0f64.hypot(0.02);
+        let mut list: Vec<f64> = mesh.nodes().iter().filter(|x| x[2] < 0.1).map(gap).collect();
+        list.sort_by(f64::total_cmp);
+        list
+    };
+    // All eight nodes of the face move, and the ninth in its middle follows.
+    let all = left(&select(Some(0.1), None));
+    assert!(all.len() == 9 && all[8] < 1e-15, "{all:?}");
+    // At x = 0 and x = 1 nodes are 0.01 away, at x = 0.5 none.
+    let near = left(&select(Some(0.005), None));
+    assert!(near[2] < 1e-15 && near[3] > 0.0 && near[8] < 0.0101, "{near:?}");
+    let one = left(&select(None, Some("One")));
+    assert!(one[0] < 1e-15 && (one[8] - 0.01 / 1.0f64.hypot(0.02)).abs() < 1e-12, "{one:?}");
 }

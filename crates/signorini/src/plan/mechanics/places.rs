@@ -170,7 +170,9 @@ impl Planner<'_> {
                 Some(Tied::Components(list)) => {
                     if list.len() != self.dimension() {
                         let message = format!("expected {} components, found {}", self.dimension(), list.len());
-                        return Err(problem.error(list, message).help("true where all points move alike, false elsewhere"));
+                        return Err(problem
+                            .error(list, message)
+                            .help("true where all points move alike, false elsewhere"));
                     }
                     if let Some(k) = (0..list.len()).find(|k| list[*k] && displacement[*k].is_some()) {
                         return Err(problem.error(list, format!("`displacement` prescribes component {k} too")));

@@ -2,11 +2,12 @@
 
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
-use crate::problem::{CaseError, Location, MeshFile};
+use crate::problem::{CaseError, Location, MeshAdjustment, MeshFile};
 use signorini_fem::mesh::position;
 use signorini_fem::{Mesh, Overlap};
 use signorini_geometry::Point;
 use signorini_geometry::mesh::TriangleMesh;
+use signorini_import::adjust::Adjustment;
 use signorini_import::mesh::{Selection, build};
 use signorini_import::{Deck, is_deck};
 use std::collections::BTreeMap;
@@ -50,6 +51,13 @@ impl Planner<'_> {
             selection.nodes.push((name.clone(), nodes.iter().map(number).collect::<Result<_, _>>()?));
         }
         selection.sides = key.sides.iter().map(|(name, sides)| (name.clone(), sides.to_vec())).collect();
+        let adjustment = |key: &MeshAdjustment| Adjustment {
+            surface: key.surface.clone(),
+            to: key.to.clone(),
+            within: key.within,
+            nodes: key.nodes.clone(),
+        };
+        selection.adjust = key.adjust.iter().map(adjustment).collect();
         let mut mesh = build::<D>(&deck, &selection).map_err(|e| fail(&key.file, e.to_string()))?;
         self.place_mesh(&mut mesh, &placement)?;
         let volume = if D == 2 { "area" } else { "volume" };
@@ -78,13 +86,19 @@ impl Planner<'_> {
     fn check_is_gmsh(&self, key: &MeshFile) -> Result<(), CaseError> {
         let message = "only files of CalculiX, Abaqus (.inp) and FEBio (.feb) have numbered nodes and faces";
         let wrong = |at: &dyn Location| {
-            Err(self.problem.error(&at.key_in(self.problem), message).help("name physical groups of a Gmsh file by `group`"))
+            Err(self
+                .problem
+                .error(&at.key_in(self.problem), message)
+                .help("name physical groups of a Gmsh file by `group`"))
         };
         if let Some(node) = &key.connected_to {
             return wrong(node);
         }
         if let Some((_, nodes)) = key.nodes.iter().next() {
             return wrong(nodes);
+        }
+        if let Some(adjustment) = key.adjust.first() {
+            return wrong(adjustment);
         }
         match key.sides.iter().next() {
             Some((_, sides)) => wrong(sides),

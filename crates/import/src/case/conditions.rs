@@ -3,7 +3,7 @@
 use super::{Names, Writer, quoted};
 use crate::ImportError;
 use crate::curve::Curve;
-use crate::deck::{LoadKind, Place, Support};
+use crate::deck::{LoadKind, Place, RigidMotion, Support};
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
 
@@ -43,9 +43,8 @@ impl Writer<'_> {
                 }
             }
         }
-        for (k, body) in self.bodies.clone().iter().enumerate().filter(|(_, b)| b.is_rigid) {
+        for k in (0..self.bodies.len()).filter(|k| self.bodies[*k].is_rigid).collect::<Vec<_>>() {
             out.push_str(&self.rigid_support(k, &mut names));
-            let _ = body;
         }
         Ok(out)
     }
@@ -139,8 +138,8 @@ impl Writer<'_> {
             Place::Faces(name, faces) => {
                 let mut own = Vec::new();
                 for face in faces {
-                    let list =
-                        crate::mesh::faces_of(deck, std::slice::from_ref(face)).map_err(|m| self_wrong(file, m))?;
+                    let list = crate::mesh::faces_of(deck, std::slice::from_ref(face))
+                        .map_err(|m| ImportError::new(file, None, m))?;
                     if list.iter().any(|f| f.iter().all(|n| body.contained.contains(n))) {
                         own.push(face.clone());
                     }
@@ -167,15 +166,15 @@ impl Writer<'_> {
         })
     }
 
-    /// The motion of a rigid body: prescribed if all components are, free otherwise.
+    /// The motion of a rigid body: prescribed if all components are and it does not turn, free otherwise. What is prescribed of
+    /// a free body is a support, which turns it about its centre.
     pub(super) fn motion(&mut self, k: usize) -> String {
         let body = &self.bodies[k];
         let Some((_, motion)) = self.deck.rigid.get(&body.material) else { return String::new() };
         let used = self.rigid_components();
-        let centre = |c: [f64; 3]| format!("{:?}", &c[..self.deck.space().dimension()]);
-        if used.iter().any(|c| motion.components[*c].is_none()) {
+        if moves_freely(&used, motion) {
             return match motion.centre {
-                Some(c) => format!("motion.free = {{ center = {} }}\n", centre(c)),
+                Some(c) => format!("motion.free = {{ center = {:?} }}\n", &c[..self.deck.space().dimension()]),
                 None => "motion.free = {}\n".into(),
             };
         }
@@ -184,17 +183,9 @@ impl Writer<'_> {
         if all.iter().all(|c| c.as_constant() == Some(0.0)) {
             return String::new();
         }
-        let dimension = self.deck.space().dimension();
-        let (shift, turn) = all.split_at(dimension);
-        let list = |curves: &[Curve], values: &mut super::Values| {
-            format!("[{}]", curves.iter().map(|c| values.value(c)).collect::<Vec<_>>().join(", "))
-        };
-        let shift = list(shift, &mut self.values);
-        if turn.iter().all(|c| c.as_constant() == Some(0.0)) {
-            return format!("motion.prescribed = {{ displacement = {shift} }}\n");
-        }
-        let turn = list(turn, &mut self.values);
-        format!("motion.prescribed = {{ displacement = {shift}, rotation = {turn} }}\n")
+        let shift: Vec<String> =
+            all[..self.deck.space().dimension()].iter().map(|curve| self.values.value(curve)).collect();
+        format!("motion.prescribed = {{ displacement = [{}] }}\n", shift.join(", "))
     }
 
     /// The components of a rigid motion that exist in the space: displacements, then rotations.
@@ -207,8 +198,7 @@ impl Writer<'_> {
         let used = self.rigid_components();
         let name = self.bodies[k].name.clone();
         let Some((_, motion)) = self.deck.rigid.get(&self.bodies[k].material) else { return String::new() };
-        let held = used.iter().filter(|c| motion.components[**c].is_some()).count();
-        if held == 0 || held == used.len() {
+        if !moves_freely(&used, motion) || used.iter().all(|c| motion.components[*c].is_none()) {
             return String::new();
         }
         let dimension = self.deck.space().dimension();
@@ -232,8 +222,10 @@ impl Writer<'_> {
     }
 }
 
-fn self_wrong(file: &std::path::Path, message: String) -> ImportError {
-    ImportError::new(file, None, message)
+/// Whether some component of a rigid body is free, or it turns.
+fn moves_freely(used: &[usize], motion: &RigidMotion) -> bool {
+    let turns = |c: usize| c >= 3 && motion.components[c].as_ref().is_some_and(|v| v.as_constant() != Some(0.0));
+    used.iter().any(|c| motion.components[*c].is_none() || turns(*c))
 }
 
 /// Supports of the same place, put together where they are of different directions.

@@ -1,13 +1,12 @@
 //! Materials.
 
-use super::curves::Curves;
 use super::xml::{File, child, children, text};
 use crate::ImportError;
-use crate::deck::{Deck, Fibre, Law, Volumetric};
+use crate::deck::{Deck, Fibre, Law, Material, Volumetric};
 use roxmltree::Node;
 
 /// Reads all materials; sections name them by number or by name.
-pub(super) fn read(file: &File, root: Node, _: &Curves, deck: &mut Deck) -> Result<(), ImportError> {
+pub(super) fn read(file: &File, root: Node, deck: &mut Deck) -> Result<(), ImportError> {
     for section in children(root, "Material") {
         for node in children(section, "material") {
             let id = file.attribute(node, "id")?;
@@ -29,7 +28,7 @@ pub(super) fn read(file: &File, root: Node, _: &Curves, deck: &mut Deck) -> Resu
 }
 
 /// The name of the material that a number or name stands for.
-pub(super) fn name_of<'d>(root: Node, deck: &'d Deck, stated: &str) -> Option<(&'d str, &'d crate::deck::Material)> {
+pub(super) fn name_of<'d>(root: Node, deck: &'d Deck, stated: &str) -> Option<(&'d str, &'d Material)> {
     if let Some(found) = deck.materials.get(stated) {
         return Some(found);
     }
@@ -54,9 +53,7 @@ fn law(file: &File, node: Node) -> Result<Law, ImportError> {
     Ok(match kind {
         "rigid body" => Law::Rigid,
         "neo-Hookean" => Law::NeoHooke { youngs_modulus: number("E")?, poissons_ratio: number("v")?, volumetric },
-        "isotropic elastic" | "linear elastic" => {
-            Law::Elastic { youngs_modulus: number("E")?, poissons_ratio: number("v")? }
-        }
+        "isotropic elastic" => Law::Elastic { youngs_modulus: number("E")?, poissons_ratio: number("v")? },
         "Mooney-Rivlin" => Law::MooneyRivlin {
             c10: number("c1")?,
             c01: optional("c2")?,

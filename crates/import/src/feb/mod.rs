@@ -42,7 +42,7 @@ pub(crate) fn read(path: &Path, what: What) -> Result<Deck, ImportError> {
         return Ok(deck);
     }
     let curves = curves::read(&file, root)?;
-    material::read(&file, root, &curves, &mut deck)?;
+    material::read(&file, root, &mut deck)?;
     let parts: Vec<roxmltree::Node> = root.children().filter(|n| n.is_element()).collect();
     let steps: Vec<roxmltree::Node> = parts
         .iter()

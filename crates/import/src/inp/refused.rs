@@ -1,7 +1,7 @@
 //! Keywords that have no counterpart here, with the reason, and those that change nothing in the results.
 
 /// Keywords without influence on displacements, stresses or contact.
-const WITHOUT_INFLUENCE: [&str; 40] = [
+const WITHOUT_INFLUENCE: [&str; 38] = [
     "HEADING",
     "NODEPRINT",
     "NODEFILE",
@@ -33,8 +33,6 @@ const WITHOUT_INFLUENCE: [&str; 40] = [
     "DENSITY",
     "DAMPING",
     "PHYSICALCONSTANTS",
-    "PARAMETER",
-    "NODALTHICKNESS",
     "DISPLAYBODY",
     "SOLVERCONTROLS",
     "DIAGNOSTICS",

@@ -74,6 +74,15 @@ fn rigid_parts_move_as_they_are_told() {
     ] {
         assert!(case.lines().any(|l| l == line), "`{line}` is not in\n{case}");
     }
+    // A body that turns is held by a support, which turns it about its centre.
+    let turned = fixed("Rx Ry Ru Rv").replace(
+        "</Rigid>",
+        "<rigid_bc type=\"rigid_rotation\"><rb>plate</rb><dof>Rw</dof><value lc=\"1\">1</value></rigid_bc></Rigid>",
+    );
+    let turned = case_of("turned.feb", &text(&turned));
+    for line in ["motion.free = { center = [0.5, 0.5, 1.0] }", "rotation = [0.0, 0.0, \"curve_2(t)\"]"] {
+        assert!(turned.lines().any(|l| l == line), "`{line}` is not in\n{turned}");
+    }
     let free = case_of("free.feb", &text(&fixed("Rx Ru Rv Rw")));
     for line in [
         "motion.free = { center = [0.5, 0.5, 1.0] }",

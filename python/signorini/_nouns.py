@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '38c86f60382d5ff0'
+SCHEMA = '281194a4b7a3edcb'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -31,8 +31,8 @@ CHOICES = {
     'Path': {'points': '[[Value]]', 'spline': 'SplinePath', 'file': 'PathFile', 'arc': 'ArcPath', 'helix': 'HelixPath', 'formula': 'FormulaPath'},
     'PathFriction': {'coulomb': 'PathCoulomb'},
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
-    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
-    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'arrays': 'MeshArrays'},
+    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
+    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays'},
 }
 
 class ActiveSetMethod(Noun):
@@ -307,7 +307,7 @@ class Cells(Noun):
     def __init__(
         self,
         *,
-        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         mesh: CellsMesh | Mapping[str, Any],
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
         alpha: Optional[Value] = None,
@@ -546,7 +546,7 @@ class Difference(Noun):
     _key = 'difference'
     _types = {'value': ('difference', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -1017,7 +1017,7 @@ class Intersection(Noun):
     _key = 'intersection'
     _types = {'value': ('intersection', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -1158,6 +1158,7 @@ class Load(Noun):
     body_force: Force per volume along each axis; per length for a rope or beam.
     force: Resultant force along each axis, distributed uniformly.
     moment: Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
+    nodal_force: Force along each axis on each node of the group, such as concentrated forces of an input deck.
     normal: For a membrane: force per area along +z.
     pressure: Force per area against the outward normal.
     tension: Tensile force along the end of a rope or beam.
@@ -1165,7 +1166,7 @@ class Load(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
+    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'nodal_force': ('nodal_force', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
 
     def __init__(
         self,
@@ -1174,6 +1175,7 @@ class Load(Noun):
         body_force: Optional[Sequence[Value] | Array] = None,
         force: Optional[Sequence[Value] | Array] = None,
         moment: Optional[Sequence[Value] | Array] = None,
+        nodal_force: Optional[Sequence[Value] | Array] = None,
         normal: Optional[Value] = None,
         pressure: Optional[Value] = None,
         tension: Optional[Value] = None,
@@ -1183,6 +1185,7 @@ class Load(Noun):
         self.body_force = body_force
         self.force = force
         self.moment = moment
+        self.nodal_force = nodal_force
         self.normal = normal
         self.pressure = pressure
         self.tension = tension
@@ -1213,6 +1216,33 @@ class Membrane(Noun):
         self.tension = tension
         self.degree = degree
         self.domain = domain
+
+
+class MeshAdjustment(Noun):
+    """Nodes of a surface that are moved to their closest points on another one.
+
+    surface: The surface of the deck whose nodes are moved.
+    to: The surface of the deck onto which they are moved, where it is in the deck.
+    nodes: Only nodes of this set of the deck.
+    within: Only nodes at most this far from it, on either side, a length in the unit of the deck; all if left
+        out.
+    """
+
+    _key = None
+    _types = {'surface': ('surface', 'str'), 'to': ('to', 'str'), 'nodes': ('nodes', 'str'), 'within': ('within', 'float')}
+
+    def __init__(
+        self,
+        *,
+        surface: str,
+        to: str,
+        nodes: Optional[str] = None,
+        within: Optional[float] = None,
+    ) -> None:
+        self.surface = surface
+        self.to = to
+        self.nodes = nodes
+        self.within = within
 
 
 class MeshArrays(Noun):
@@ -1264,6 +1294,51 @@ class MeshAxis(Noun):
         self.to = to
         self.cells = cells
         self.growth = growth
+
+
+class MeshFile(Noun):
+    """A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of
+    a deck are groups of the mesh.
+
+    file: A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    adjust: Nodes of a surface of a deck that are moved onto another of its surfaces, to close gaps of the mesh.
+    connected_to: The number of a node of a deck: only the connected part that contains it forms the body.
+    group: The set of elements, part or physical group that forms the body; all cells if left out.
+    nodes: Further groups by the numbers of their nodes in the deck. A group holds all faces and edges whose nodes
+        are all in it.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    sides: Further groups of faces: an element or a set of elements of the deck and the number of the face, such
+        as `"12 S3"`.
+    translate: Translation, applied after scaling and rotation; lengths.
+    """
+
+    _key = 'file'
+    _types = {'file': ('file', 'str'), 'adjust': ('adjust', '[MeshAdjustment]'), 'connected_to': ('connected_to', 'int'), 'group': ('group', 'str'), 'nodes': ('nodes', '{[int]}'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'sides': ('sides', '{[str]}'), 'translate': ('translate', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        adjust: Optional[Sequence[MeshAdjustment | Mapping[str, Any]] | Array] = None,
+        connected_to: Optional[int] = None,
+        group: Optional[str] = None,
+        nodes: Optional[Mapping[str, Sequence[int] | Array]] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        sides: Optional[Mapping[str, Sequence[str] | Array]] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.adjust = adjust
+        self.connected_to = connected_to
+        self.group = group
+        self.nodes = nodes
+        self.rotate = rotate
+        self.scale = scale
+        self.sides = sides
+        self.translate = translate
 
 
 class Mortar(Noun):
@@ -1406,7 +1481,7 @@ class OffsetGeometry(Noun):
     def __init__(
         self,
         *,
-        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         distance: Value,
     ) -> None:
         self.of = of
@@ -1747,7 +1822,7 @@ class Rigid(Noun):
     def __init__(
         self,
         *,
-        shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
         side: Optional[str] = None,
         smooth: Optional[bool] = None,
@@ -1940,7 +2015,7 @@ class Solid(Noun):
     def __init__(
         self,
         *,
-        mesh: BoxMesh | GmshMesh | MeshArrays | Mapping[str, Any] | str,
+        mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | Mapping[str, Any] | str,
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
         degree: Optional[int] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
@@ -2094,11 +2169,12 @@ class Support(Noun):
     rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
         components.
     spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
-    tied: All points share one unknown displacement in the components that are not prescribed.
+    tied: All points share one unknown displacement: in the components that are not prescribed, or in those that
+        are true of a list such as `[false, false, true]`.
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool')}
+    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]')}
 
     def __init__(
         self,
@@ -2108,7 +2184,7 @@ class Support(Noun):
         normal: Optional[Value] = None,
         rotation: Optional[Sequence[Value] | Array] = None,
         spring: Optional[Sequence[Value] | Array] = None,
-        tied: Optional[bool] = None,
+        tied: Optional[bool | Sequence[bool] | Array] = None,
     ) -> None:
         self.on = on
         self.displacement = displacement
@@ -2237,7 +2313,7 @@ class Union(Noun):
     _key = 'union'
     _types = {'value': ('union', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -2460,4 +2536,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]

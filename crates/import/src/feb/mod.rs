@@ -120,6 +120,8 @@ fn control(file: &File, section: roxmltree::Node, deck: &mut Deck) -> Result<(),
         return Err(file.wrong(section, format!("{count} time steps of {size}: both must be positive")));
     }
     let from = deck.steps.last().map_or(0.0, |s| s.to);
-    deck.steps.push(Step { to: from + count * size, increments: count as usize });
+    // Twelve digits: 24 steps of 0.1 end at 2.4.
+    let to = format!("{:.11e}", from + count * size).parse().unwrap_or(from + count * size);
+    deck.steps.push(Step { to, increments: count as usize });
     Ok(())
 }

@@ -15,10 +15,16 @@ impl Model {
         if kind == "TIED" {
             interaction.friction = Friction::Tied;
         }
-        self.deck.remark(
-            card.line,
-            format!("*{}, {kind}: its stiffness is left out; here surfaces do not penetrate", card.keyword),
-        );
+        // Hard contact is what there is here.
+        if kind != "HARD" {
+            let stated = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?;
+            let stiffness = stated.map_or(String::new(), |k| format!(" {k:?}"));
+            let message = format!(
+                "*{}, {kind}: its stiffness{stiffness} is left out; here surfaces do not penetrate",
+                card.keyword
+            );
+            self.deck.remark(card.line, message);
+        }
         Ok(())
     }
 

@@ -34,7 +34,7 @@ fn cubes(stress: f64) -> (TempDir, String) {
 *NSET, NSET=Ledge\n5, 6, 7, 8
 *SURFACE, NAME=Slave\nHigh, S1
 *SURFACE, NAME=Master\nLow, S2
-*MATERIAL, NAME=EL\n*ELASTIC\n1.e9, .25
+*MATERIAL, NAME=EL\n*ELASTIC\n1.e6, .25
 *SOLID SECTION, ELSET=Low, MATERIAL=EL
 *SOLID SECTION, ELSET=High, MATERIAL=EL
 *SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD
@@ -65,11 +65,11 @@ fn pressed_cubes_have_the_stress_of_a_bar() {
     let step = last_step(&found);
     let contact = &step["contacts"]["Slave_Master"];
     assert!((number(&contact["force"][2]) - 10.0).abs() < 1e-9, "{contact}");
-    // The cubes slide on each other by a part of their strain, 1e-8.
-    assert!((number(&contact["max_pressure"]) - 10.0).abs() < 1e-6, "{contact}");
+    // The cubes slide on each other by a part of their strain, 1e-5, which is also that of the pressure.
+    assert!((number(&contact["max_pressure"]) / 10.0 - 1.0).abs() < 1e-5, "{contact}");
     // σ²/2E in each cube: 13 in the lower one, 10 in the upper one.
-    let energy = (13.0f64.powi(2) + 10.0f64.powi(2)) / 2e9;
-    assert!((number(&step["energy"]) / energy - 1.0).abs() < 1e-6, "{}", step["energy"]);
+    let energy = (13.0f64.powi(2) + 10.0f64.powi(2)) / 2e6;
+    assert!((number(&step["energy"]) / energy - 1.0).abs() < 1e-5, "{}", step["energy"]);
 }
 
 /// Keys of `mesh.file` that do not fit its file are told at their place.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 #: Hash of the schema, by which the tests in Rust know it.
 SCHEMA = 'b1c4d9e74ca2b5a0'
 SCHEMA = 'fcd8929f7be5a391'
+SCHEMA = '281194a4b7a3edcb'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -33,8 +34,8 @@ CHOICES = {
     'Path': {'points': '[[Value]]', 'spline': 'SplinePath', 'file': 'PathFile', 'arc': 'ArcPath', 'helix': 'HelixPath', 'formula': 'FormulaPath'},
     'PathFriction': {'coulomb': 'PathCoulomb'},
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
-    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
-    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'arrays': 'MeshArrays'},
+    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
+    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays'},
 }
 
 class ActiveSetMethod(Noun):
@@ -347,7 +348,7 @@ class Cells(Noun):
     def __init__(
         self,
         *,
-        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         mesh: CellsMesh | Mapping[str, Any],
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         alpha: Optional[Value] = None,
@@ -626,7 +627,7 @@ class Difference(Noun):
     _key = 'difference'
     _types = {'value': ('difference', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -1175,7 +1176,7 @@ class Intersection(Noun):
     _key = 'intersection'
     _types = {'value': ('intersection', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -1316,6 +1317,7 @@ class Load(Noun):
     body_force: Force per volume along each axis; per length for a rope or beam.
     force: Resultant force along each axis, distributed uniformly.
     moment: Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
+    nodal_force: Force along each axis on each node of the group, such as concentrated forces of an input deck.
     normal: For a membrane: force per area along +z.
     pressure: Force per area against the outward normal.
     tension: Tensile force along the end of a rope or beam.
@@ -1323,7 +1325,7 @@ class Load(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
+    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'nodal_force': ('nodal_force', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
 
     def __init__(
         self,
@@ -1332,6 +1334,7 @@ class Load(Noun):
         body_force: Optional[Sequence[Value] | Array] = None,
         force: Optional[Sequence[Value] | Array] = None,
         moment: Optional[Sequence[Value] | Array] = None,
+        nodal_force: Optional[Sequence[Value] | Array] = None,
         normal: Optional[Value] = None,
         pressure: Optional[Value] = None,
         tension: Optional[Value] = None,
@@ -1341,6 +1344,7 @@ class Load(Noun):
         self.body_force = body_force
         self.force = force
         self.moment = moment
+        self.nodal_force = nodal_force
         self.normal = normal
         self.pressure = pressure
         self.tension = tension
@@ -1371,6 +1375,33 @@ class Membrane(Noun):
         self.tension = tension
         self.degree = degree
         self.domain = domain
+
+
+class MeshAdjustment(Noun):
+    """Nodes of a surface that are moved to their closest points on another one.
+
+    surface: The surface of the deck whose nodes are moved.
+    to: The surface of the deck onto which they are moved, where it is in the deck.
+    nodes: Only nodes of this set of the deck.
+    within: Only nodes at most this far from it, on either side, a length in the unit of the deck; all if left
+        out.
+    """
+
+    _key = None
+    _types = {'surface': ('surface', 'str'), 'to': ('to', 'str'), 'nodes': ('nodes', 'str'), 'within': ('within', 'float')}
+
+    def __init__(
+        self,
+        *,
+        surface: str,
+        to: str,
+        nodes: Optional[str] = None,
+        within: Optional[float] = None,
+    ) -> None:
+        self.surface = surface
+        self.to = to
+        self.nodes = nodes
+        self.within = within
 
 
 class MeshArrays(Noun):
@@ -1438,6 +1469,26 @@ class MooneyRivlin(Noun):
 
     _key = 'mooney_rivlin'
     _types = {'c10': ('c10', 'Value'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'c01': ('c01', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+class MeshFile(Noun):
+    """A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of
+    a deck are groups of the mesh.
+
+    file: A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    adjust: Nodes of a surface of a deck that are moved onto another of its surfaces, to close gaps of the mesh.
+    connected_to: The number of a node of a deck: only the connected part that contains it forms the body.
+    group: The set of elements, part or physical group that forms the body; all cells if left out.
+    nodes: Further groups by the numbers of their nodes in the deck. A group holds all faces and edges whose nodes
+        are all in it.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling; one angle in the
+        plane.
+    scale: Length of one unit of the file in base units; 1 if left out.
+    sides: Further groups of faces: an element or a set of elements of the deck and the number of the face, such
+        as `"12 S3"`.
+    translate: Translation, applied after scaling and rotation; lengths.
+    """
+
+    _key = 'file'
+    _types = {'file': ('file', 'str'), 'adjust': ('adjust', '[MeshAdjustment]'), 'connected_to': ('connected_to', 'int'), 'group': ('group', 'str'), 'nodes': ('nodes', '{[int]}'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'sides': ('sides', '{[str]}'), 'translate': ('translate', '[Value]')}
 
     def __init__(
         self,
@@ -1453,6 +1504,25 @@ class MooneyRivlin(Noun):
         self.c01 = c01
         self.fibre = fibre
         self.volumetric = volumetric
+        file: str,
+        adjust: Optional[Sequence[MeshAdjustment | Mapping[str, Any]] | Array] = None,
+        connected_to: Optional[int] = None,
+        group: Optional[str] = None,
+        nodes: Optional[Mapping[str, Sequence[int] | Array]] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        sides: Optional[Mapping[str, Sequence[str] | Array]] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.adjust = adjust
+        self.connected_to = connected_to
+        self.group = group
+        self.nodes = nodes
+        self.rotate = rotate
+        self.scale = scale
+        self.sides = sides
+        self.translate = translate
 
 
 class Mortar(Noun):
@@ -1599,7 +1669,7 @@ class OffsetGeometry(Noun):
     def __init__(
         self,
         *,
-        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         distance: Value,
     ) -> None:
         self.of = of
@@ -2024,7 +2094,7 @@ class Rigid(Noun):
     def __init__(
         self,
         *,
-        shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        shape: Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
         side: Optional[str] = None,
         smooth: Optional[bool] = None,
@@ -2219,6 +2289,8 @@ class Solid(Noun):
         *,
         mesh: BoxMesh | GmshMesh | MeshArrays | Mapping[str, Any] | str,
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
+        mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | Mapping[str, Any] | str,
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
         degree: Optional[int] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
         strain: Optional[str] = None,
@@ -2371,11 +2443,12 @@ class Support(Noun):
     rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
         components.
     spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
-    tied: All points share one unknown displacement in the components that are not prescribed.
+    tied: All points share one unknown displacement: in the components that are not prescribed, or in those that
+        are true of a list such as `[false, false, true]`.
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool')}
+    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]')}
 
     def __init__(
         self,
@@ -2385,7 +2458,7 @@ class Support(Noun):
         normal: Optional[Value] = None,
         rotation: Optional[Sequence[Value] | Array] = None,
         spring: Optional[Sequence[Value] | Array] = None,
-        tied: Optional[bool] = None,
+        tied: Optional[bool | Sequence[bool] | Array] = None,
     ) -> None:
         self.on = on
         self.displacement = displacement
@@ -2514,7 +2587,7 @@ class Union(Noun):
     _key = 'union'
     _types = {'value': ('union', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -2767,3 +2840,4 @@ class ProblemKeys(Noun):
 
 __all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
 __all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]

@@ -261,7 +261,7 @@ mod tests {
         let upper = |side: &Side| (0..2).all(|k| mesh.on_side(*side, &[2.0 * k as f64 - 1.0, 0.0, 0.0]).0[1] > 1.99);
         let sides = mesh.boundary().into_iter().filter(upper).collect();
         let cells = (0..mesh.cell_count() as u32).collect();
-        let film = Group { cells, sides, vertices: Vec::new() };
+        let film = Group { cells, sides, ..Group::default() };
         *mesh.group_mut("film") = film;
         mesh
     }

@@ -147,12 +147,13 @@ impl<const D: usize> Halved<D> {
         of.iter().flat_map(parts).collect()
     }
 
-    /// A group with the parts of its cells and sides; its vertices are the same.
+    /// A group with the parts of its cells and sides; its nodes are the same, and all of them vertices now.
     pub fn group(&self, of: &Group) -> Group {
         Group {
             cells: of.cells.iter().flat_map(|cell| cell * Self::PARTS..(cell + 1) * Self::PARTS).collect(),
             sides: self.sides(&of.sides),
-            vertices: of.vertices.clone(),
+            vertices: of.vertices.iter().copied().chain(of.between.iter().map(|b| b.node)).collect(),
+            between: Vec::new(),
         }
     }
 }

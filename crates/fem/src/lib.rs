@@ -42,7 +42,7 @@ pub use dofs::DofMap;
 pub use ghost::ghost_penalty;
 pub use grid::Grid;
 pub use halved::Halved;
-pub use mesh::{Group, Mesh, MeshError, Side};
+pub use mesh::{Group, Mesh, MeshError, NodeBetween, Side};
 pub use mesh_cells::MeshCells;
 pub use overlap::Overlap;
 pub use refined_grid::RefinedGrid;

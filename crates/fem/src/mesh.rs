@@ -19,6 +19,17 @@ pub struct Group {
     pub cells: Vec<u32>,
     pub sides: Vec<Side>,
     pub vertices: Vec<u32>,
+    /// Nodes that are no vertices.
+    pub between: Vec<NodeBetween>,
+}
+
+/// A node in the middle of an edge, a face or a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeBetween {
+    pub node: u32,
+    /// A cell that has it, and its place among the nodes of the cell.
+    pub cell: u32,
+    pub place: u8,
 }
 
 #[derive(Clone, Copy, Debug)]

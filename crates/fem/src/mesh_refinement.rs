@@ -104,6 +104,7 @@ impl Mesh<2> {
                 cells: group.cells.iter().flat_map(|&cell| cells(cell)).collect(),
                 sides: group.sides.iter().flat_map(|&side| sides(side)).collect(),
                 vertices: group.vertices.clone(),
+                between: Vec::new(),
             };
         }
     }

@@ -111,6 +111,8 @@ pub enum Load<'a> {
     Pressure(Field<'a>),
     /// Resultant.
     Force(Vector<3>),
+    /// Force on each node.
+    NodalForce(Vector<3>),
     /// Resultant moment about fixed axes.
     Moment(Vector<3>),
     /// Moment about axes that turn with the section.

@@ -62,6 +62,7 @@ pub enum TimedLoad {
     Pressure(TimeField),
     /// Resultants: at the place where it is a point, at the time only elsewhere.
     Force(TimeVectorField),
+    NodalForce(TimeVectorField),
     Moment(TimeVectorField),
     FollowerMoment(TimeVectorField),
     Tension(TimeField),
@@ -93,6 +94,7 @@ impl PlacedLoad {
             TimedLoad::Traction(f) => act(&Load::Traction(&|x| f(x, time))),
             TimedLoad::Pressure(f) => act(&Load::Pressure(&|x| f(x, time))),
             TimedLoad::Force(f) => act(&Load::Force(f(&place, time))),
+            TimedLoad::NodalForce(f) => act(&Load::NodalForce(f(&place, time))),
             TimedLoad::Moment(f) => act(&Load::Moment(f(&place, time))),
             TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&place, time))),
             TimedLoad::Tension(f) => act(&Load::Tension(f(&place, time))),

@@ -74,6 +74,8 @@ pub enum SolidMesh {
     Box(BoxMesh),
     /// A mesh from a file.
     Gmsh(GmshMesh),
+    /// A mesh from a file of Gmsh (`.msh`), CalculiX or Abaqus (`.inp`), or FEBio (`.feb`), by the ending of its name.
+    File(MeshFile),
     /// A mesh from arrays.
     Arrays(MeshArrays),
     #[schemars(skip)]
@@ -248,6 +250,48 @@ pub struct GmshMesh {
     pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
     pub translate: Option<List<Value>>,
+}
+
+/// A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of a deck are
+/// groups of the mesh.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    pub file: String,
+    /// The set of elements, part or physical group that forms the body; all cells if left out.
+    pub group: Option<String>,
+    /// The number of a node of a deck: only the connected part that contains it forms the body.
+    pub connected_to: Option<i64>,
+    /// Further groups by the numbers of their nodes in the deck. A group holds all faces and edges whose nodes are all in it.
+    #[serde(default)]
+    pub nodes: Named<List<i64>>,
+    /// Further groups of faces: an element or a set of elements of the deck and the number of the face, such as `"12 S3"`.
+    #[serde(default)]
+    pub sides: Named<List<String>>,
+    /// Nodes of a surface of a deck that are moved onto another of its surfaces, to close gaps of the mesh.
+    #[serde(default)]
+    pub adjust: List<MeshAdjustment>,
+    /// Length of one unit of the file in base units; 1 if left out.
+    pub scale: Option<Value>,
+    /// Rotation vector in radians about the origin of the file, applied after scaling; one angle in the plane.
+    pub rotate: Option<Components>,
+    /// Translation, applied after scaling and rotation; lengths.
+    pub translate: Option<List<Value>>,
+}
+
+/// Nodes of a surface that are moved to their closest points on another one.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshAdjustment {
+    /// The surface of the deck whose nodes are moved.
+    pub surface: String,
+    /// The surface of the deck onto which they are moved, where it is in the deck.
+    pub to: String,
+    /// Only nodes at most this far from it, on either side, a length in the unit of the deck; all if left out.
+    pub within: Option<f64>,
+    /// Only nodes of this set of the deck.
+    pub nodes: Option<String>,
 }
 
 /// A mesh from a file whose cells may be divided.

@@ -308,10 +308,21 @@ pub struct Support {
     pub rotation: Option<List<Value>>,
     /// Prescribed displacement along the outward normal; the tangential components are free.
     pub normal: Option<Value>,
-    /// All points share one unknown displacement in the components that are not prescribed.
-    pub tied: Option<bool>,
+    /// All points share one unknown displacement: in the components that are not prescribed, or in those that are true of a list
+    /// such as `[false, false, true]`.
+    pub tied: Option<Tied>,
     /// Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
     pub spring: Option<List<Value>>,
+}
+
+/// The components in which all points of a support share one unknown displacement.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Tied {
+    /// All that are not prescribed, or none.
+    All(bool),
+    /// Those that are true.
+    Components(List<bool>),
 }
 
 /// A load.
@@ -328,6 +339,8 @@ pub struct Load {
     pub pressure: Option<Value>,
     /// Resultant force along each axis, distributed uniformly.
     pub force: Option<List<Value>>,
+    /// Force along each axis on each node of the group, such as concentrated forces of an input deck.
+    pub nodal_force: Option<List<Value>>,
     /// Force per volume along each axis; per length for a rope or beam.
     pub body_force: Option<List<Value>>,
     /// Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.

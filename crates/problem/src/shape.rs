@@ -1,7 +1,7 @@
 //! Shapes of rigid bodies. Those with a closed form have their keys here, with what the keys say of where the shape stands,
 //! and how they are read: a new one is its file in geometry, and its keys with one arm of [`Shape::closed_form`] here.
 
-use super::{CaseError, Components, List, Problem, TriangleArrays, Value};
+use super::{CaseError, Components, List, MeshFile, Problem, TriangleArrays, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_geometry::Vector;
@@ -34,6 +34,8 @@ pub enum Shape {
     Nurbs(SurfaceFile),
     /// A triangle mesh from an STL, OBJ or PLY file.
     Stl(SurfaceFile),
+    /// The boundary of a mesh of cells in space from a file, such as a rigid part of a deck. Curved faces become flat.
+    File(MeshFile),
     /// A triangle mesh from arrays.
     Triangles(TriangleArrays),
     /// The body below measured heights on a grid of points, from CSV, NPY or 16-bit TIFF.

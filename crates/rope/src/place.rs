@@ -127,6 +127,9 @@ impl Line<'_> {
             (Load::Traction(_) | Load::Pressure(_), _) => {
                 return Err(self.unsuitable("a curve has no area: give a force, or a force per length"));
             }
+            (Load::NodalForce(_), _) => {
+                return Err(self.unsuitable("a force on each node is for solids: give a force, or a force per length"));
+            }
             (Load::Moment(_) | Load::FollowerMoment(_), _) => {
                 return Err(self.unsuitable("only sections of beams with shear have moments"));
             }

@@ -7,6 +7,7 @@ mod bar;
 mod begin;
 mod commands;
 mod console;
+mod import;
 mod report;
 mod sweeps;
 
@@ -163,6 +164,17 @@ enum Command {
         template: String,
         /// The new folder (default: the template's name)
         folder: Option<PathBuf>,
+    },
+    /// Write the case of an input deck of CalculiX or Abaqus (.inp) or FEBio (.feb)
+    #[command(
+        after_help = "Example:\n  signorini import deck.inp -o case.toml\n\nThe case refers to the deck for its mesh. What is left out or changed stands at its top. A deck that\nneeds what does not exist here is refused, with the line and the keyword."
+    )]
+    Import {
+        /// The deck
+        deck: PathBuf,
+        /// The case file, or - for standard output (default: the name of the deck, with .toml)
+        #[arg(short, long, value_name = "CASE")]
+        output: Option<PathBuf>,
     },
     /// Rewrite case files of earlier versions with the present names of keys
     #[command(
@@ -351,6 +363,7 @@ fn main() -> ExitCode {
         }
         Command::View { folder, port } => report::view(&folder, port, json),
         Command::New { template, folder } => begin::new(&template, folder, json),
+        Command::Import { deck, output } => import::import(&deck, output, json),
         Command::Migrate { files } => begin::migrate(&files, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { summary, markdown } => begin::schema(summary, markdown),

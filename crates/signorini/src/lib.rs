@@ -23,6 +23,7 @@ mod text_table;
 pub mod verify;
 
 pub use signorini_expression as expression;
+pub use signorini_import as import;
 pub use signorini_problem::{self as problem, case};
 
 /// Inner parts for the tests in `tests`; no part of the interface.

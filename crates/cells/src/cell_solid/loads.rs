@@ -52,6 +52,7 @@ impl<const D: usize> CellSolid<D> {
             Load::Moment(_) | Load::FollowerMoment(_) => {
                 Err(self.unsuitable("moments on bodies of cells are not available: use tractions with this moment"))
             }
+            Load::NodalForce(_) => Err(self.unsuitable("finite cells have no nodes: give a force")),
             Load::Tension(_) => Err(self.unsuitable("a tension acts on the end of a rope")),
         }
     }

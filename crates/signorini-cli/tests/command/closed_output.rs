@@ -33,6 +33,7 @@ fn arguments(command: &str) -> Option<(&'static [&'static str], i32)> {
         "draw" => (&["draw", "nothing", "--json"], 1),
         "view" => (&["view", "nothing", "--json"], 1),
         "new" => (&["new", "string", "begun"], 0),
+        "import" => (&["import", "nothing.inp", "--json"], 1),
         "migrate" => (&["migrate", "case.toml"], 0),
         "explain" => (&["explain"], 0),
         "schema" => (&["schema"], 0),

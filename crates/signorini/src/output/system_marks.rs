@@ -62,7 +62,8 @@ pub fn marks(plan: &MechanicsPlan) -> Vec<Mark> {
     for load in &plan.system.loads {
         let places = thinned(of_part(plan, &start, &load.part), MARKS);
         let force = |(x, outward): &Place| match &load.load {
-            TimedLoad::BodyForce(f) | TimedLoad::Traction(f) | TimedLoad::Force(f) => f(x, end),
+            TimedLoad::BodyForce(f) | TimedLoad::Traction(f) => f(x, end),
+            TimedLoad::Force(f) | TimedLoad::NodalForce(f) => f(x, end),
             TimedLoad::Moment(f) | TimedLoad::FollowerMoment(f) => f(x, end),
             TimedLoad::Pressure(p) => outward.unwrap_or_default() * -p(x, end),
             TimedLoad::Tension(_) | TimedLoad::Springs(_) => Vector::<3>::zeros(),

@@ -413,7 +413,7 @@ impl Planner<'_> {
                 return Err(problem.error(side, "paths inside of bodies"));
             }
             // Triangles have no curvature; the surface through their vertices has.
-            let is_mesh = matches!(rigid.shape, Shape::Stl(_) | Shape::Triangles(_));
+            let is_mesh = matches!(rigid.shape, Shape::Stl(_) | Shape::File(_) | Shape::Triangles(_));
             out.push(if is_mesh {
                 super::rigid::smooth_body::<3>(self, name, rigid)?
             } else {

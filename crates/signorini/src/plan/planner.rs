@@ -6,7 +6,11 @@ use crate::expression::{Definition, Names};
 use crate::problem::units::Units;
 use crate::problem::{self, CaseError, KeyPath, Location, Problem, ProblemPart, Space, Value, suggestion};
 use crate::report::Warning;
+use signorini_import::Deck;
 use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Reads values in the context of one problem.
@@ -18,6 +22,8 @@ pub(crate) struct Planner<'a> {
     pub halves: bool,
     /// What looks wrong in files that were read.
     pub warnings: RefCell<Vec<Warning>>,
+    /// Decks that were read, by their paths.
+    pub decks: RefCell<BTreeMap<PathBuf, Rc<Deck>>>,
 }
 
 /// Names of the position's coordinates, by space.
@@ -49,6 +55,7 @@ impl<'a> Planner<'a> {
             space: problem.space,
             halves: false,
             warnings: RefCell::default(),
+            decks: RefCell::default(),
         };
         planner.define_constants()?;
         planner.define_functions()?;

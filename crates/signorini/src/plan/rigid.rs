@@ -275,6 +275,10 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 self.check_in_space(shape, "triangulated surface")?;
                 Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
             }
+            Shape::File(key) => {
+                self.check_in_space(shape, "triangulated surface")?;
+                Arc::new(ClosestPoints { shape: planner.boundary_of_file(key)?.into(), normals: Normals::Outward })
+            }
             Shape::Triangles(key) => {
                 self.check_in_space(shape, "triangulated surface")?;
                 let normals = Normals::Outward;
@@ -367,6 +371,7 @@ pub(super) fn smooth_body<const D: usize>(
 ) -> Result<RigidBody, CaseError> {
     let mesh = match &rigid.shape {
         Shape::Stl(key) => planner.closed_mesh(key)?,
+        Shape::File(key) => planner.boundary_of_file(key)?,
         Shape::Triangles(key) => planner.surface_of_arrays(key)?,
         other => {
             return Err(planner

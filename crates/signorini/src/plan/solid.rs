@@ -1,6 +1,7 @@
 //! From the statement to the cells of solids, their materials and laws of friction.
 
 mod elastic_plastic;
+mod file;
 mod friction;
 mod interface;
 mod material;
@@ -43,6 +44,7 @@ impl Planner<'_> {
                 let placement = PlacementKeys { scale: &g.scale, rotate: &g.rotate, translate: &g.translate };
                 self.gmsh::<D>(&g.file, g.group.as_deref(), &placement)?
             }
+            SolidMesh::File(file) => self.mesh_of_file::<D>(file)?,
             SolidMesh::Arrays(arrays) => self.mesh_of_arrays::<D>(arrays)?,
             SolidMesh::Nurbs(_) => return Err(self.unavailable(&key.mesh, "a NURBS solid")),
         };

@@ -17,6 +17,7 @@ mod floors;
 mod free_bodies;
 mod friction;
 mod gallery;
+mod imported;
 mod invariance;
 mod materials;
 mod meshes;

@@ -5,9 +5,11 @@ use super::projection::{functions, project};
 use super::spatial::spatial;
 use crate::body::Bodies;
 use signorini_fem::Group;
+use signorini_fem::hierarchic::Values;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Constraint, Hold, PlaceError};
+use std::collections::{BTreeMap, BTreeSet};
 
 impl<const D: usize> SolidBody<D> {
     pub(super) fn constraints(
@@ -24,15 +26,17 @@ impl<const D: usize> SolidBody<D> {
             Some(_) => self.group(on)?.clone(),
             None => Group { cells: (0..body.mesh.cell_count() as u32).collect(), ..Group::default() },
         };
-        let all = functions(body, &group);
-        if all.is_empty() {
+        let mut all = functions(body, &group);
+        if all.is_empty() && group.between.is_empty() {
             return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
         }
         let wanted = |x: &Point<D>| {
             let x = spatial(x);
             Point::<D>::from_fn(|i, _| hold.displacement[i].map_or(0.0, |field| field(&x)))
         };
-        let wanted = project(body, &group, &wanted);
+        let at = wanted;
+        let mut wanted = project(body, &group, &at);
+        let coupled = self.between(&group, &at, &mut all, &mut wanted);
         let mut is_vertex = vec![false; body.dofs.count()];
         body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
         // The functions of the vertices add up to one: forces on them make the resultant.
@@ -47,9 +51,26 @@ impl<const D: usize> SolidBody<D> {
                 out.push(Constraint { terms, violation, reaction: reaction(f, axis(i)) });
             }
         }
+        for Coupled { terms, value } in &coupled {
+            for i in (0..D).filter(|&i| hold.displacement[i].is_some()) {
+                let terms: Vec<(u32, f64)> = terms.iter().map(|(f, n)| (D as u32 * f + i as u32, *n)).collect();
+                let moved: f64 = terms.iter().map(|(k, n)| n * u[*k as usize]).sum();
+                let share: f64 = terms.iter().filter(|(k, _)| is_vertex[*k as usize / D]).map(|(_, n)| n).sum();
+                let reaction = [axis(i) * share, Vector::<3>::zeros()];
+                out.push(Constraint { terms, violation: moved - value[i], reaction });
+            }
+        }
+        if !coupled.is_empty() && (hold.along.is_some() || hold.uniform != [false; 3]) {
+            return Err(self.unsuitable(format!(
+                "`{}` has nodes in the middle of edges without the ends of these: they can only be held along the axes",
+                on.unwrap_or("all")
+            )));
+        }
         if let Some((n, field)) = &hold.along {
             let direction = Point::<D>::from_fn(|i, _| n[i]);
-            let wanted = project(body, &group, &|x| direction * field(&spatial(x)));
+            let at = |x: &Point<D>| direction * field(&spatial(x));
+            let mut wanted = project(body, &group, &at);
+            self.between(&group, &at, &mut all.clone(), &mut wanted);
             for &f in &all {
                 let own = |i: usize| (D as u32 * f + i as u32, n[i]);
                 let terms: Vec<(u32, f64)> = (0..D).map(own).filter(|t| t.1 != 0.0).collect();
@@ -71,6 +92,50 @@ impl<const D: usize> SolidBody<D> {
             }
         }
         Ok(out)
+    }
+}
+
+/// A node whose displacement several functions make that are not held: `Σ N_f u_f = value`.
+struct Coupled<const D: usize> {
+    terms: Vec<(u32, f64)>,
+    value: Point<D>,
+}
+
+impl<const D: usize> SolidBody<D> {
+    /// Adds what nodes in the middle of edges and faces hold: a function where all others there are held already.
+    fn between(
+        &self,
+        group: &Group,
+        wanted: &dyn Fn(&Point<D>) -> Point<D>,
+        held: &mut BTreeSet<u32>,
+        values: &mut BTreeMap<u32, Point<D>>,
+    ) -> Vec<Coupled<D>> {
+        let body = self.body();
+        let (mut at, mut of_map, mut out) = (Values::default(), Values::default(), Vec::new());
+        for between in &group.between {
+            let cell = between.cell as usize;
+            let map = body.mesh.map(cell);
+            let xi = map.nodes()[usize::from(between.place)];
+            map.tabulate(&xi, &mut of_map);
+            body.dofs.basis(cell).tabulate(&xi, &mut at);
+            let mut value = wanted(&body.mesh.position(cell, &of_map));
+            let mut terms = Vec::new();
+            for ((f, sign), n) in body.dofs.cell(cell).zip(&at.value).filter(|(_, n)| n.abs() > 1e-12) {
+                match held.contains(&f) {
+                    true => value -= values.get(&f).copied().unwrap_or_else(Point::<D>::zeros) * (sign * n),
+                    false => terms.push((f, sign * n)),
+                }
+            }
+            match terms[..] {
+                [] => {}
+                [(f, n)] => {
+                    held.insert(f);
+                    values.insert(f, value / n);
+                }
+                _ => out.push(Coupled { terms, value }),
+            }
+        }
+        out
     }
 }
 

@@ -3,11 +3,13 @@
 //! A pressure `p` acts on the current area, `r = p ∫ N x_1 × x_2`; its derivative is that of the area normal, symmetric on
 //! a closed surface (Bufler 1984). At small strain it acts on the reference area.
 
+use super::projection::vertices;
 use super::spatial::spatial;
 use super::{SolidBody, axis};
 use crate::material::Space;
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
+use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;
 use signorini_fem::small::determinant;
 use signorini_geometry::{Point, Vector};
@@ -26,6 +28,7 @@ impl<const D: usize> SolidBody<D> {
         match load {
             Load::BodyForce(force) => self.body_force(on, force, out),
             Load::Force(force) => self.resultant(on, force, out),
+            Load::NodalForce(force) => self.nodal_force(on, force, out),
             Load::Traction(traction) => {
                 self.on_sides(on, &mut |x, area, list| push::<D>(list, &(traction(x) * area), out)).map(|_| ())
             }
@@ -123,6 +126,29 @@ impl<const D: usize> SolidBody<D> {
         }
         out.forces.iter_mut().zip(unit.forces).for_each(|(o, f)| *o += f / total);
         Ok(())
+    }
+
+    /// The same force on each node of a place; without a place on all vertices of the boundary.
+    fn nodal_force(&self, on: Option<&str>, force: &Vector<3>, out: &mut Contribution) -> Result<(), PlaceError> {
+        let body = self.body();
+        let group = self.group(on)?;
+        let (mut at, mut nodes) = (Values::default(), 0);
+        for f in vertices(body, group).into_iter().filter_map(|v| body.dofs.vertex(v)) {
+            (0..D).for_each(|i| out.forces[D * f as usize + i] -= force[i]);
+            nodes += 1;
+        }
+        for between in &group.between {
+            let cell = between.cell as usize;
+            body.dofs.basis(cell).tabulate(&body.mesh.map(cell).nodes()[usize::from(between.place)], &mut at);
+            for ((f, sign), value) in body.dofs.cell(cell).zip(&at.value) {
+                (0..D).for_each(|i| out.forces[D * f as usize + i] -= sign * value * force[i]);
+            }
+            nodes += 1;
+        }
+        match nodes {
+            0 => Err(self.unsuitable(format!("`{}` has no nodes for a force on each of them", on.unwrap_or("all")))),
+            _ => Ok(()),
+        }
     }
 
     fn volume(&self, on: Option<&str>) -> Result<f64, PlaceError> {

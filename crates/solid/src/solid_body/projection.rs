@@ -10,7 +10,7 @@ use signorini_geometry::Point;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The vertices of a group.
-fn vertices<const D: usize>(body: &Body<D>, group: &Group) -> BTreeSet<u32> {
+pub(super) fn vertices<const D: usize>(body: &Body<D>, group: &Group) -> BTreeSet<u32> {
     let mesh = &body.mesh;
     let of_sides = group.sides.iter().flat_map(|side| mesh.side_vertices(*side));
     let of_cells = group.cells.iter().flat_map(|cell| mesh.vertices(*cell as usize));

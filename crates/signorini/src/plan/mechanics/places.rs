@@ -3,7 +3,7 @@
 use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
 use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
-use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Value, suggestion};
+use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Tied, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
@@ -163,8 +163,23 @@ impl Planner<'_> {
                 }
             }
             let mut uniform = [false; 3];
-            if key.tied.as_ref().is_some_and(|u| *u) {
-                (0..self.dimension()).for_each(|k| uniform[k] = displacement[k].is_none());
+            match &key.tied {
+                Some(Tied::All(true)) => {
+                    (0..self.dimension()).for_each(|k| uniform[k] = displacement[k].is_none());
+                }
+                Some(Tied::Components(list)) => {
+                    if list.len() != self.dimension() {
+                        let message = format!("expected {} components, found {}", self.dimension(), list.len());
+                        return Err(problem
+                            .error(list, message)
+                            .help("true where all points move alike, false elsewhere"));
+                    }
+                    if let Some(k) = (0..list.len()).find(|k| list[*k] && displacement[*k].is_some()) {
+                        return Err(problem.error(list, format!("`displacement` prescribes component {k} too")));
+                    }
+                    list.iter().enumerate().for_each(|(k, tied)| uniform[k] = *tied);
+                }
+                Some(Tied::All(false)) | None => {}
             }
             let rotation = match &key.rotation {
                 Some(values) if self.space == Space::ThreeD => self.held_components(values, 3, NONE, wrong)?,
@@ -276,6 +291,13 @@ impl Planner<'_> {
                 self.check_resultant(v, &part, system)?;
                 list.push(TimedLoad::Force(self.vector_field(v, force, wrong)?));
             }
+            if let Some(v) = &key.nodal_force {
+                if !matches!(kinds[part.body], Kind::Solid) {
+                    return Err(problem.error(v, "`nodal_force` is only for solids").help("force = […]"));
+                }
+                self.check_resultant(v, &part, system)?;
+                list.push(TimedLoad::NodalForce(self.vector_field(v, force, wrong)?));
+            }
             if let Some(v) = &key.body_force {
                 let per =
                     if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
@@ -294,7 +316,7 @@ impl Planner<'_> {
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
                     .error(key, format!("the load `{name}` has {} values", list.len()))
-                    .help("give exactly one of force, moment, tension, body_force (per volume, or per length of curves), traction, pressure")
+                    .help("give exactly one of force, nodal_force, moment, tension, body_force (per volume, or per length of curves), traction, pressure")
             })?;
             self.check_load(&part, &key.on, system)(&load)?;
             out.push(PlacedLoad { name: name.clone(), part, load });
@@ -360,6 +382,7 @@ impl Planner<'_> {
                 TimedLoad::Traction(_) => Load::Traction(&none),
                 TimedLoad::Pressure(_) => Load::Pressure(&zero),
                 TimedLoad::Force(_) => Load::Force(Vector::<3>::zeros()),
+                TimedLoad::NodalForce(_) => Load::NodalForce(Vector::<3>::zeros()),
                 TimedLoad::Moment(_) => Load::Moment(Vector::<3>::zeros()),
                 TimedLoad::FollowerMoment(_) => Load::FollowerMoment(Vector::<3>::zeros()),
                 TimedLoad::Tension(_) => Load::Tension(0.0),

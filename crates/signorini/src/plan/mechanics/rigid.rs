@@ -66,6 +66,7 @@ impl Planner<'_> {
                 (if outside { vec![site] } else { Vec::new() }, 2.0 * radius)
             }
             Shape::Stl(file) => of_mesh(&self.closed_mesh(file)?, outside),
+            Shape::File(file) => of_mesh(&self.boundary_of_file(file)?, outside),
             Shape::Triangles(arrays) => of_mesh(&self.surface_of_arrays(arrays)?, outside),
             _ => (Vec::new(), (high - low).norm()),
         })

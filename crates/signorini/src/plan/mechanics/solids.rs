@@ -64,7 +64,7 @@ impl Planner<'_> {
             let vertices: BTreeSet<u32> =
                 (0..mesh.cell_count()).flat_map(|c| mesh.vertices(c)).filter(|v| lies(*v)).collect();
             on_axis = !vertices.is_empty();
-            let group = Group { cells: Vec::new(), sides, vertices: vertices.into_iter().collect() };
+            let group = Group { sides, vertices: vertices.into_iter().collect(), ..Group::default() };
             groups.insert(AXIS.to_string(), group);
         }
         let body = SolidBody::<D>::new(name, Arc::new(mesh), degree, material, space, groups).map_err(|e| match e {

@@ -174,6 +174,7 @@ impl Planner<'_> {
                 ("traction", key.traction.as_ref().map(|v| self.key(v))),
                 ("pressure", key.pressure.as_ref().map(|v| self.key(v))),
                 ("force", key.force.as_ref().map(|v| self.key(v))),
+                ("nodal_force", key.nodal_force.as_ref().map(|v| self.key(v))),
                 ("body_force", key.body_force.as_ref().map(|v| self.key(v))),
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {

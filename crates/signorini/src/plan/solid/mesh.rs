@@ -148,12 +148,7 @@ impl Planner<'_> {
         let fail = |message: String| self.problem.error(file, format!("`{}`: {message}", path.display()));
         let parsed = signorini_fem::gmsh::GmshFile::parse(&bytes).map_err(|e| fail(e.to_string()))?;
         let mut mesh = parsed.mesh::<D>(group).map_err(|e| fail(e.to_string()))?;
-        if let Some(placement) = self.placement::<D>(placement)? {
-            mesh.move_nodes(|x| {
-                let placed = placement.point(&Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 }));
-                Point::<D>::from_fn(|k, _| placed[k])
-            });
-        }
+        self.place_mesh(&mut mesh, placement)?;
         let volume = if D == 2 { "area" } else { "volume" };
         mesh.check().map_err(|e| {
             fail(e.to_string())

@@ -1,0 +1,79 @@
+//! Contacts between bodies.
+
+use super::{Names, Writer, quoted};
+use crate::ImportError;
+use crate::deck::{Friction, Surface};
+use std::fmt::Write;
+
+impl Writer<'_> {
+    /// The tables of all contacts.
+    pub(super) fn contacts(&mut self) -> Result<String, ImportError> {
+        let mut names = Names::default();
+        let mut out = String::new();
+        for pair in &self.deck.contacts {
+            let wrong = |message: String| ImportError::new(&self.deck.file, pair.line, message);
+            if pair.friction == Friction::Tied {
+                return Err(wrong(format!(
+                    "`{}` and `{}` are tied: cannot be imported, joined surfaces do not exist here",
+                    pair.slave, pair.master
+                )));
+            }
+            let surface = |name: &str| {
+                let none = || wrong(format!("there is no surface `{name}`"));
+                self.deck.surfaces.get(name).map(|(name, surface)| (name.to_string(), surface)).ok_or_else(none)
+            };
+            let ((slave, on_slave), (master, on_master)) = (surface(&pair.slave)?, surface(&pair.master)?);
+            let friction = match pair.friction {
+                Friction::Coulomb(mu) => format!("friction.coulomb = {{ mu = {mu:?} }}\n"),
+                _ => String::new(),
+            };
+            let bodies = |surface: &Surface| -> Vec<usize> {
+                (0..self.bodies.len()).filter(|k| self.touches(*k, surface)).collect()
+            };
+            let (first, second) = (bodies(on_slave), bodies(on_master));
+            if first.is_empty() || second.is_empty() {
+                return Err(wrong(format!("`{slave}` or `{master}` is no part of a body")));
+            }
+            let mut remarks = Vec::new();
+            for a in &first {
+                for b in &second {
+                    let [own, other] = [a, b].map(|k| &self.bodies[*k]);
+                    let part = |k: usize, group: &str| {
+                        let body = &self.bodies[k];
+                        if body.is_rigid { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
+                    };
+                    if own.is_rigid && other.is_rigid {
+                        remarks.push(format!(
+                            "the contact of the rigid bodies `{}` and `{}` is left out",
+                            own.name, other.name
+                        ));
+                        continue;
+                    }
+                    let between = if a == b {
+                        remarks.push(format!(
+                            "the contact of `{slave}` with `{master}` is self-contact of all of `{}`",
+                            own.name
+                        ));
+                        format!("self_contact = {}", quoted(&own.name))
+                    } else {
+                        format!("between = [{}, {}]", part(*a, &slave), part(*b, &master))
+                    };
+                    let name = names.take(&pair.name);
+                    let _ = writeln!(out, "\n[contacts.{name}]\n{between}\n{friction}");
+                    while out.ends_with("\n\n") {
+                        out.pop();
+                    }
+                }
+            }
+            remarks.into_iter().for_each(|r| self.remark(r));
+        }
+        Ok(out)
+    }
+
+    /// Whether a part of a surface is on a body.
+    fn touches(&self, body: usize, surface: &Surface) -> bool {
+        let own = &self.bodies[body].contained;
+        surface.faces.iter().any(|face| face.iter().all(|n| own.contains(n)))
+            || surface.nodes.iter().any(|n| own.contains(n))
+    }
+}

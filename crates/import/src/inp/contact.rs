@@ -1,0 +1,94 @@
+//! Contacts: pairs of surfaces and what happens between them.
+
+use super::card::{Card, Data};
+use super::model::Model;
+use crate::ImportError;
+use crate::adjust::Adjustment;
+use crate::deck::{ContactPair, Friction};
+
+impl Model {
+    pub(super) fn behaviour(&mut self, card: &Card) -> Result<(), ImportError> {
+        let kind = card.value("PRESSUREOVERCLOSURE").unwrap_or("HARD").to_uppercase();
+        let Some(interaction) = self.interaction.as_ref().and_then(|name| self.interactions.get_mut(name)) else {
+            return Err(card.wrong(None, "expected *SURFACE INTERACTION before it"));
+        };
+        if kind == "TIED" {
+            interaction.friction = Friction::Tied;
+        }
+        // Hard contact is what there is here.
+        if kind != "HARD" {
+            let stated = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?;
+            let stiffness = stated.map_or(String::new(), |k| format!(" {k:?}"));
+            let message = format!(
+                "*{}, {kind}: its stiffness{stiffness} is left out; here surfaces do not penetrate",
+                card.keyword
+            );
+            self.deck.remark(card.line, message);
+        }
+        Ok(())
+    }
+
+    pub(super) fn friction(&mut self, card: &Card) -> Result<(), ImportError> {
+        let Some(interaction) = self.interaction.as_ref().and_then(|name| self.interactions.get_mut(name)) else {
+            return Err(card.wrong(None, "expected *SURFACE INTERACTION before it"));
+        };
+        let mu = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?.unwrap_or(0.0);
+        let friction = if mu > 0.0 { Friction::Coulomb(mu) } else { Friction::None };
+        if self.in_step && interaction.friction != friction {
+            return Err(card.wrong(None, "cannot be imported: coefficients of friction that change do not exist here"));
+        }
+        if interaction.friction != Friction::Tied {
+            interaction.friction = friction;
+        }
+        if card.data.first().is_some_and(|d| d.fields.len() > 1) {
+            let message = format!("*{}: its stick slope is left out; here contacts stick exactly", card.keyword);
+            self.deck.remark(card.line, message);
+        }
+        Ok(())
+    }
+
+    pub(super) fn contact_pair(&mut self, card: &Card) -> Result<(), ImportError> {
+        self.only(card, &["INTERACTION", "TYPE", "SMALLSLIDING", "ADJUST"]);
+        let interaction = card.value("INTERACTION").map(str::to_uppercase);
+        for data in &card.data {
+            let pair = self.pair(card, data, Friction::None)?;
+            if let Some(adjust) = card.value("ADJUST") {
+                let (within, nodes) = match adjust.parse::<f64>() {
+                    Ok(within) => (Some(within), None),
+                    Err(_) => (None, Some(self.node_set(card, adjust)?)),
+                };
+                let (surface, to) = (pair.slave.clone(), pair.master.clone());
+                self.deck.adjustments.push(Adjustment { surface, to, within, nodes });
+            }
+            self.contacts.push((pair, interaction.clone()));
+        }
+        Ok(())
+    }
+
+    pub(super) fn tie(&mut self, card: &Card) -> Result<(), ImportError> {
+        for data in &card.data {
+            let pair = self.pair(card, data, Friction::Tied)?;
+            self.contacts.push((pair, None));
+        }
+        Ok(())
+    }
+
+    /// The name of a set of nodes as the deck has it.
+    fn node_set(&self, card: &Card, name: &str) -> Result<String, ImportError> {
+        let none = || card.wrong(None, format!("there is no set of nodes `{name}`"));
+        self.deck.node_sets.get(name).map(|(name, _)| name.to_string()).ok_or_else(none)
+    }
+
+    /// The two surfaces of a line: slave, master.
+    fn pair(&self, card: &Card, data: &Data, friction: Friction) -> Result<ContactPair, ImportError> {
+        let surface = |k: usize| {
+            let name = data.fields.get(k).map_or("", String::as_str);
+            let none = || {
+                card.wrong(data, format!("there is no surface `{name}`; the deck has {}", self.deck.surfaces.names()))
+            };
+            self.deck.surfaces.get(name).map(|(name, _)| name.to_string()).ok_or_else(none)
+        };
+        let (slave, master) = (surface(0)?, surface(1)?);
+        Ok(ContactPair { name: format!("{slave}_{master}"), slave, master, friction, line: data.line })
+    }
+}

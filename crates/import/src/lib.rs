@@ -1,0 +1,68 @@
+//! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`).
+//!
+//! A deck is read into plain types ([`Deck`]): mesh, sets, materials, supports, loads, contacts and steps. From these the
+//! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). A keyword that is not known is an error
+//! with its line; what is left out or changed is a [`Remark`] of the deck.
+
+pub mod adjust;
+pub mod case;
+mod components;
+pub mod curve;
+pub mod deck;
+pub mod element;
+mod error;
+mod feb;
+mod inp;
+pub mod mesh;
+
+pub use deck::{Deck, Remark};
+pub use error::ImportError;
+
+use std::path::Path;
+
+/// The kinds of files that are decks, by their extension.
+pub const EXTENSIONS: [&str; 2] = ["inp", "feb"];
+
+/// Whether the name of a file is that of a deck.
+pub fn is_deck(file: &Path) -> bool {
+    extension(file).is_some_and(|e| EXTENSIONS.contains(&e.as_str()))
+}
+
+fn extension(file: &Path) -> Option<String> {
+    Some(file.extension()?.to_str()?.to_lowercase())
+}
+
+/// Reads a whole deck.
+///
+/// # Errors
+/// A file that cannot be read, an unknown extension, and everything in the deck that has no counterpart here, with its line.
+pub fn read(file: &Path) -> Result<Deck, ImportError> {
+    read_as(file, What::All)
+}
+
+/// Reads the mesh of a deck with its sets and surfaces; everything else in it is skipped.
+///
+/// # Errors
+/// A file that cannot be read, an unknown extension, nodes, elements or sets that are wrong.
+pub fn read_mesh(file: &Path) -> Result<Deck, ImportError> {
+    read_as(file, What::Mesh)
+}
+
+/// What is read of a deck.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    All,
+    Mesh,
+}
+
+fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
+    match extension(file).as_deref() {
+        Some("inp") => inp::read(file, what),
+        Some("feb") => feb::read(file, what),
+        _ => Err(ImportError::new(
+            file,
+            None,
+            "not a deck: expected a file named .inp (CalculiX, Abaqus) or .feb (FEBio)",
+        )),
+    }
+}

@@ -1,0 +1,228 @@
+//! Decks of CalculiX and Abaqus.
+
+use crate::{case_of, deck, refused, written};
+use signorini_import::deck::{Friction, Law, LoadKind, Place};
+use signorini_import::{case, read};
+
+/// Two cubes on top of each other; `{model}` stands behind the mesh, `{steps}` at the end.
+fn cubes(model: &str, steps: &str) -> String {
+    format!(
+        "*HEADING
+two cubes
+** a comment
+*NODE, NSET=Nall
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+5, 0, 0, 1
+6, 1, 0, 1
+7, 1, 1, 1
+8, 0, 1, 1
+11, 0, 0, 1
+12, 1, 0, 1
+13, 1, 1, 1
+14, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=Eall
+1, 1, 2, 3, 4,
+   5, 6, 7, 8
+2, 11, 12, 13, 14, 15, 16, 17, 18
+*NSET, NSET=Bottom, GENERATE
+1, 4, 1
+*NSET, NSET=Top
+15, 16
+17, 18
+*SURFACE, NAME=Low
+1, S2
+*Surface, Name=High, type=ELEMENT
+2, S1
+*MATERIAL, NAME=EL
+*ELASTIC
+210000., .3
+*SOLID SECTION, ELSET=EALL, MATERIAL=el
+{model}
+*BOUNDARY
+Bottom, 1, 3
+{steps}"
+    )
+}
+
+const CONTACT: &str = "*CONTACT PAIR, INTERACTION=I1,
+ TYPE=SURFACE TO SURFACE
+High, Low
+*SURFACE INTERACTION, NAME=I1
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1.e7, 3.
+*FRICTION
+0.2, 1.e5";
+
+const STEP: &str = "*STEP
+*STATIC
+0.25, 1.
+*DLOAD
+2, P2, 10.
+*CLOAD
+Top, 1, 2.
+17, 1, 1.
+*NODE PRINT, NSET=Nall
+U
+*END STEP";
+
+#[test]
+fn a_deck_becomes_bodies_supports_loads_and_contacts() {
+    let text = cubes(CONTACT, STEP);
+    let deck = deck("cubes.inp", &text).unwrap();
+    assert_eq!(deck.title.as_deref(), Some("two cubes"));
+    assert_eq!((deck.nodes.len(), deck.elements.len()), (16, 2));
+    assert_eq!(deck.node_sets.get("bottom").unwrap().1, &vec![1, 2, 3, 4]);
+    assert_eq!(deck.surfaces.get("LOW").unwrap().1.faces, vec![vec![5, 8, 7, 6]]);
+    assert_eq!(deck.contacts[0].friction, Friction::Coulomb(0.2));
+    let [step] = &deck.steps[..] else { panic!("one step") };
+    assert_eq!((step.to, step.increments), (1.0, 4));
+    let written = case_of("cubes.inp", &text);
+    for line in [
+        "# - line 42: *SURFACE BEHAVIOR, LINEAR: its stiffness 10000000.0 is left out; here surfaces do not penetrate",
+        "material.linear_elastic = { youngs_modulus = 210000.0, poissons_ratio = 0.3 }",
+        "connected_to = 11",
+        "sides.pressure = [\"2 2\"]",
+        "on = \"Eall:Bottom\"",
+        "displacement = [0.0, 0.0, 0.0]",
+        "pressure = \"10.0*t\"",
+        "between = [\"Eall_2:High\", \"Eall:Low\"]",
+        "friction.coulomb = { mu = 0.2 }",
+        // The node 17 carries both forces.
+        "nodal_force = [\"2.0*t\", 0.0, 0.0]",
+        "nodal_force = [\"3.0*t\", 0.0, 0.0]",
+        "increments = 4",
+    ] {
+        assert!(written.lines().any(|l| l == line), "`{line}` is not in\n{written}");
+    }
+}
+
+/// Values ramp from step to step, follow amplitudes, and removed loads ramp down.
+#[test]
+fn histories_go_through_all_steps() {
+    let steps = "*AMPLITUDE, NAME=A
+0., 0., .5, 1., 1., 0.5
+*STEP, NLGEOM
+*STATIC
+1., 2.
+*BOUNDARY
+Top, 3, 3, -0.4
+*CLOAD, AMPLITUDE=A
+12, 2, 8.
+*END STEP
+*STEP, NLGEOM
+*STATIC
+*BOUNDARY
+Top, 3, 3, 0.2
+*CLOAD, OP=NEW
+*END STEP";
+    let deck = deck("steps.inp", &cubes("", steps)).unwrap();
+    assert!(deck.finite_strain);
+    assert_eq!(deck.steps.iter().map(|s| s.to).collect::<Vec<_>>(), [2.0, 3.0]);
+    let top = deck.supports.iter().find(|s| s.on == Place::NodeSet("Top".into())).unwrap();
+    let height = top.displacement[2].as_ref().unwrap();
+    for (t, v) in [(0.0, 0.0), (1.0, -0.2), (2.0, -0.4), (2.5, -0.1), (3.0, 0.2)] {
+        assert!((height.at(t) - v).abs() < 1e-15, "{t}: {}", height.at(t));
+    }
+    let LoadKind::NodalForce(force) = &deck.loads[0].kind else { panic!("a force") };
+    for (t, v) in [(0.25, 4.0), (0.5, 8.0), (1.0, 4.0), (2.0, 4.0), (2.5, 2.0), (3.0, 0.0)] {
+        assert!((force[1].at(t) - v).abs() < 1e-15, "{t}: {}", force[1].at(t));
+    }
+}
+
+#[test]
+fn equal_displacements_are_tied_and_included_files_are_read() {
+    let model = "*EQUATION\n2\n15, 3, 1., 16, 3, -1.\n2\n16, 3, 1., 17, 3, -1.\n*INCLUDE, INPUT=more.inp";
+    let more = "** of the same deck\n*NSET, NSET=one\n15\n*BOUNDARY\none, 1\n";
+    let (_folder, path) = written(&[("deck.inp", &cubes(model, STEP)), ("more.inp", more)]);
+    let deck = read(&path).unwrap();
+    let tied = deck.supports.iter().find(|s| s.tied == [false, false, true]).unwrap();
+    assert_eq!(tied.on, Place::Nodes("equal".into(), vec![15, 16, 17]));
+    let held = deck.supports.iter().find(|s| s.on == Place::NodeSet("one".into())).unwrap();
+    assert!(held.displacement[0].is_some() && held.displacement[1].is_none());
+    assert!(case::text(&deck, "deck.inp").unwrap().contains("tied = [false, false, true]"));
+}
+
+#[test]
+fn laws_of_materials() {
+    let law = |cards: &str| {
+        let model = format!("*MATERIAL, NAME=M\n{cards}");
+        deck("laws.inp", &cubes(&model, STEP)).unwrap().materials.get("M").unwrap().1.law.clone().unwrap()
+    };
+    let Law::MooneyRivlin { c10, c01, bulk_modulus, .. } = law("*HYPERELASTIC, NEO HOOKE\n0.5, 0.02") else { panic!() };
+    assert_eq!((c10, c01, bulk_modulus), (0.5, 0.0, 100.0));
+    let Law::Ogden { mu, alpha, bulk_modulus, .. } = law("*HYPERELASTIC, OGDEN, N=2\n1., 2., 3., -2., .01, 0.") else {
+        panic!()
+    };
+    assert_eq!((mu, alpha, bulk_modulus), (vec![1.0, 3.0], vec![2.0, -2.0], 200.0));
+    let Law::Yeoh { c, .. } = law("*HYPERELASTIC, YEOH\n.5, -.01, .001, .02") else { panic!() };
+    assert_eq!(c, [0.5, -0.01, 0.001]);
+    let Law::Plastic { hardening, .. } = law("*ELASTIC\n100., .3\n*PLASTIC, HARDENING=KINEMATIC\n2., 0.\n3., .1")
+    else {
+        panic!()
+    };
+    assert_eq!(format!("{hardening:?}"), "Kinematic { yield_stress: 2.0, modulus: 10.0 }");
+}
+
+#[test]
+fn what_cannot_be_imported_is_named_with_its_line() {
+    let line_of = |text: &str, what: &str| text.lines().position(|l| l.contains(what)).map(|k| k + 1);
+    for (model, steps, at, told) in [
+        ("*FANCY CARD", STEP, "*FANCY", "*FANCY CARD: this keyword is not known"),
+        (
+            "",
+            "*STEP\n*HEAT TRANSFER\n*END STEP",
+            "*HEAT",
+            "*HEAT TRANSFER: cannot be imported: heat transfer does not exist here",
+        ),
+        ("*NSET, NSET=N\n1, 99, Nothing", STEP, "Nothing", "*NSET: there is no set `Nothing`"),
+        ("*BOUNDARY\n99, 1", STEP, "99, 1", "*BOUNDARY: there is no node 99"),
+        (
+            "*ELEMENT, TYPE=S4\n9, 1, 2, 3, 4",
+            STEP,
+            "TYPE=S4",
+            "*ELEMENT: elements of type S4 are not known here: valid are",
+        ),
+        (
+            "*SURFACE, NAME=Odd\n1, S7",
+            STEP,
+            "1, S7",
+            "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7",
+        ),
+        ("*EQUATION\n2\n15, 3, 1., 16, 3, -2.", STEP, "\n2", "*EQUATION: cannot be imported: only equal displacements"),
+        ("*TIE, NAME=T\nHigh, Low", STEP, "High, Low", "`High` and `Low` are tied: cannot be imported"),
+    ] {
+        let text = cubes(model, steps);
+        let (line, message) = refused("wrong.inp", &text);
+        assert!(message.starts_with(told), "{message}");
+        if !at.starts_with('\n') {
+            assert_eq!(line, line_of(&text, at), "{message}");
+        }
+    }
+}
+
+/// A support that a later step removes would hold at all times here.
+#[test]
+fn a_support_that_ends_is_refused() {
+    let steps = "*STEP\n*STATIC\n*END STEP\n*STEP\n*STATIC\n*BOUNDARY, OP=NEW\nTop, 1\n*END STEP";
+    let (_, message) = refused("released.inp", &cubes("", steps));
+    assert_eq!(
+        message,
+        "*BOUNDARY, OP=NEW: cannot be imported: the node 1 is released here; supports hold at all times"
+    );
+}
+
+#[test]
+fn a_body_of_two_materials_is_refused() {
+    let model = "*NODE\n21, 0, 0, -1\n22, 1, 0, -1\n23, 1, 1, -1\n24, 0, 1, -1
+*ELEMENT, TYPE=C3D8, ELSET=Below\n3, 21, 22, 23, 24, 1, 2, 3, 4
+*MATERIAL, NAME=SOFT\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=Below, MATERIAL=SOFT";
+    let (_, message) = refused("two.inp", &cubes(model, STEP));
+    assert_eq!(message, "`EALL` and `Below` share nodes, but have different materials: a body has one material here");
+}

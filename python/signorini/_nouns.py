@@ -13,9 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'b1c4d9e74ca2b5a0'
-SCHEMA = 'fcd8929f7be5a391'
-SCHEMA = '281194a4b7a3edcb'
+SCHEMA = 'bd246f53db89abc0'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -815,6 +813,17 @@ class ExponentialCompliance(Noun):
 
     _key = 'exponential'
     _types = {'pressure': ('pressure', 'Value'), 'length': ('length', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        pressure: Value,
+        length: Value,
+    ) -> None:
+        self.pressure = pressure
+        self.length = length
+
+
 class Fibre(Noun):
     """Fibres along one direction, which carry in tension only (Weiss, Maker and Govindjee 1996; FEBio's transversely
     isotropic Mooney-Rivlin): the stress times the stretch is `c3 (exp(c4 (l - 1)) - 1)` between the stretches 1
@@ -833,11 +842,6 @@ class Fibre(Noun):
     def __init__(
         self,
         *,
-        pressure: Value,
-        length: Value,
-    ) -> None:
-        self.pressure = pressure
-        self.length = length
         direction: Sequence[Value] | Array,
         c3: Value,
         c4: Value,
@@ -1455,20 +1459,6 @@ class MeshAxis(Noun):
         self.growth = growth
 
 
-class MooneyRivlin(Noun):
-    """Hyperelastic: Mooney-Rivlin, `c10 (I1 - 3) + c01 (I2 - 3)` of the invariants without change of volume;
-    requires `strain = "finite"`.
-
-    c10: Constant of the first invariant, a force per area. The shear modulus at rest is `2 (c10 + c01)`.
-    bulk_modulus: Bulk modulus, a force per area: `2/D1` in Abaqus.
-    c01: Constant of the second invariant, a force per area; 0 if left out.
-    fibre: Fibres along one direction.
-    volumetric: Energy of the change of volume with the bulk modulus `K`: `linear`, `K/2 (J - 1)^2` (Abaqus),
-        `logarithmic`, `K/2 ln(J)^2` (FEBio), or `quadratic`, `K/4 (J^2 - 1 - 2 ln J)`; `linear` if left out.
-    """
-
-    _key = 'mooney_rivlin'
-    _types = {'c10': ('c10', 'Value'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'c01': ('c01', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
 class MeshFile(Noun):
     """A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of
     a deck are groups of the mesh.
@@ -1493,17 +1483,6 @@ class MeshFile(Noun):
     def __init__(
         self,
         *,
-        c10: Value,
-        bulk_modulus: Value,
-        c01: Optional[Value] = None,
-        fibre: Optional[Fibre | Mapping[str, Any]] = None,
-        volumetric: Optional[str] = None,
-    ) -> None:
-        self.c10 = c10
-        self.bulk_modulus = bulk_modulus
-        self.c01 = c01
-        self.fibre = fibre
-        self.volumetric = volumetric
         file: str,
         adjust: Optional[Sequence[MeshAdjustment | Mapping[str, Any]] | Array] = None,
         connected_to: Optional[int] = None,
@@ -1523,6 +1502,37 @@ class MeshFile(Noun):
         self.scale = scale
         self.sides = sides
         self.translate = translate
+
+
+class MooneyRivlin(Noun):
+    """Hyperelastic: Mooney-Rivlin, `c10 (I1 - 3) + c01 (I2 - 3)` of the invariants without change of volume;
+    requires `strain = "finite"`.
+
+    c10: Constant of the first invariant, a force per area. The shear modulus at rest is `2 (c10 + c01)`.
+    bulk_modulus: Bulk modulus, a force per area: `2/D1` in Abaqus.
+    c01: Constant of the second invariant, a force per area; 0 if left out.
+    fibre: Fibres along one direction.
+    volumetric: Energy of the change of volume with the bulk modulus `K`: `linear`, `K/2 (J - 1)^2` (Abaqus),
+        `logarithmic`, `K/2 ln(J)^2` (FEBio), or `quadratic`, `K/4 (J^2 - 1 - 2 ln J)`; `linear` if left out.
+    """
+
+    _key = 'mooney_rivlin'
+    _types = {'c10': ('c10', 'Value'), 'bulk_modulus': ('bulk_modulus', 'Value'), 'c01': ('c01', 'Value'), 'fibre': ('fibre', 'Fibre'), 'volumetric': ('volumetric', 'str')}
+
+    def __init__(
+        self,
+        *,
+        c10: Value,
+        bulk_modulus: Value,
+        c01: Optional[Value] = None,
+        fibre: Optional[Fibre | Mapping[str, Any]] = None,
+        volumetric: Optional[str] = None,
+    ) -> None:
+        self.c10 = c10
+        self.bulk_modulus = bulk_modulus
+        self.c01 = c01
+        self.fibre = fibre
+        self.volumetric = volumetric
 
 
 class Mortar(Noun):
@@ -2287,10 +2297,8 @@ class Solid(Noun):
     def __init__(
         self,
         *,
-        mesh: BoxMesh | GmshMesh | MeshArrays | Mapping[str, Any] | str,
-        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | Mapping[str, Any] | str,
-        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | Mapping[str, Any] | str,
+        material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         degree: Optional[int] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
         strain: Optional[str] = None,
@@ -2838,6 +2846,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshArrays", "MeshAxis", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Ellipse", "Ellipsoid", "ExactIntegration", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "OnBody", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

@@ -393,6 +393,11 @@ pub trait Constitution {
         None
     }
 
+    /// Whether a change of its volume takes far more stress than a change of its shape, at finite strain.
+    fn is_nearly_incompressible(&self) -> bool {
+        false
+    }
+
     /// Whether the stress of the body depends on the states before.
     fn is_inelastic(&self) -> bool {
         false

@@ -82,13 +82,13 @@ impl Problem<'_> {
         self.begin(start)?;
         let predicts =
             self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
-        // At finite strain a step that turns material stretches it, and what is nearly incompressible takes that for a change of
-        // its volume: the step after it corrects that.
-        let bends = self.system.bodies.iter().any(|b| !b.is_rigid() && !b.is_linear());
+        // A step that turns material stretches it, and what is nearly incompressible takes that for a change of its volume: the step
+        // after it corrects that.
+        let is_stiff = self.system.bodies.iter().any(|b| b.is_nearly_incompressible());
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
         let search = if self.goes_down {
             Search::Energy
-        } else if predicts || bends || !self.metric.is_empty() {
+        } else if predicts || is_stiff || !self.metric.is_empty() {
             Search::Watchdog { patience: PATIENCE }
         } else {
             Search::Monotone

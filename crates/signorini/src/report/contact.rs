@@ -178,6 +178,17 @@ impl ErrorEstimate {
         let [force, area, max_pressure] = [force, area, max_pressure].map(|change| Self::SAFETY * change.abs());
         Self { front: None, area, force, max_pressure: Some(max_pressure) }
     }
+
+    /// The larger of two, one by one.
+    pub fn larger(&self, other: &Self) -> Self {
+        let of = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);
+        Self {
+            front: of(self.front, other.front),
+            area: self.area.max(other.area),
+            force: self.force.max(other.force),
+            max_pressure: of(self.max_pressure, other.max_pressure),
+        }
+    }
 }
 
 /// Another equilibrium of an adhesive membrane at the same load.

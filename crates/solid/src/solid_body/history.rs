@@ -6,7 +6,7 @@
 use super::SolidBody;
 use super::spatial::spatial;
 use crate::law::{Plastic, StressLaw};
-use crate::material::Elastic;
+use crate::material::{Elastic, Space};
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
@@ -64,9 +64,17 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
+/// Lamé's constant over the shear modulus from which a body is nearly incompressible: a Poisson's ratio of 0.49.
+const INCOMPRESSIBLE: f64 = 49.0;
+
 impl<const D: usize> Constitution for SolidBody<D> {
     fn law_name(&self) -> Option<String> {
         Some(self.law().name())
+    }
+
+    fn is_nearly_incompressible(&self) -> bool {
+        let (lambda, mu) = self.body().material.lame(Space::Solid);
+        !self.law().is_small_strain() && lambda > INCOMPRESSIBLE * mu
     }
 
     fn is_inelastic(&self) -> bool {

@@ -1,4 +1,5 @@
-//! What the cells of a system leave uncertain: the change with functions of one degree more, over the whole history.
+//! What the cells of a system leave uncertain: the change with functions of one degree more and with cells of half the size, the
+//! larger of both, over the whole history.
 
 use super::{MechanicsModel, report};
 use crate::output::system::SystemShown;
@@ -38,7 +39,7 @@ impl Progress for Quiet<'_> {
 struct Finer {
     /// With functions of one degree more, and the growth; none where a degree is known to a mesh only.
     raised: Option<(Problem, f64)>,
-    /// Whether cells may be halved instead, as where there are no functions of a higher degree.
+    /// Whether cells may be halved.
     halves: bool,
 }
 
@@ -73,23 +74,14 @@ fn finer(problem: &Problem) -> Option<Finer> {
 }
 
 impl Finer {
-    /// The plan that is finer, if it grows by no more than so many times along a line.
-    fn plan(&self, problem: &Problem, most: f64) -> Option<Box<MechanicsPlan>> {
-        if let Some((raised, growth)) = &self.raised {
-            if *growth > most {
-                return None;
-            }
-            if let Ok(Plan::Mechanics(plan)) = crate::plan::plan(raised) {
-                return Some(plan);
-            }
-        }
-        if !self.halves || most < 2.0 {
-            return None;
-        }
-        match crate::plan::halved(problem) {
-            Ok(Plan::Mechanics(plan)) => Some(plan),
-            _ => None,
-        }
+    /// The plans that are finer, if they grow by no more than so many times along a line: with functions of one degree more, and
+    /// with cells of half the size. One alone may agree with the run by chance, as where a zone ends in the same cell.
+    fn plans(&self, problem: &Problem, most: f64) -> Vec<Box<MechanicsPlan>> {
+        let raised = self.raised.as_ref().filter(|(_, growth)| *growth <= most);
+        let raised = raised.and_then(|(raised, _)| crate::plan::plan(raised).ok());
+        let halved = if self.halves && most >= 2.0 { crate::plan::halved(problem).ok() } else { None };
+        let system = |plan| if let Plan::Mechanics(plan) = plan { Some(plan) } else { None };
+        raised.into_iter().chain(halved).filter_map(system).collect()
     }
 }
 
@@ -112,16 +104,18 @@ pub fn estimate(
         return;
     }
     let most = (affordable / work).powf(if in_space { 1.0 / 3.0 } else { 0.5 });
-    let finer = finer(&plan.head.problem).and_then(|finer| finer.plan(&plan.head.problem, most));
-    let Some(finer) = finer else { return };
+    let Some(finer) = finer(&plan.head.problem) else { return };
     let taken: usize = record.iter().chain([&*step]).map(|s| s.iterations).sum();
-    let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
-    let Some(fine) = last_step(MechanicsModel::new(*finer), &mut quiet) else { return };
-    for (name, found) in &mut step.contacts {
-        let Some(fine) = fine.contacts.get(name) else { continue };
-        let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();
-        let (area, pressure) = (fine.area - found.area, fine.max_pressure - found.max_pressure);
-        found.error_estimate = Some(ErrorEstimate::of_changes(force.sqrt(), area, pressure));
+    for plan in finer.plans(&plan.head.problem, most) {
+        let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
+        let Some(fine) = last_step(MechanicsModel::new(*plan), &mut quiet) else { continue };
+        for (name, found) in &mut step.contacts {
+            let Some(fine) = fine.contacts.get(name) else { continue };
+            let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();
+            let (area, pressure) = (fine.area - found.area, fine.max_pressure - found.max_pressure);
+            let own = ErrorEstimate::of_changes(force.sqrt(), area, pressure);
+            found.error_estimate = Some(found.error_estimate.map_or(own, |other| other.larger(&own)));
+        }
     }
 }
 

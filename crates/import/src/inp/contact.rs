@@ -19,8 +19,12 @@ impl Model {
         if kind != "HARD" {
             let stated = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?;
             let stiffness = stated.map_or(String::new(), |k| format!(" {k:?}"));
+            // A stiffness that is meant, and not a penalty, is a compliance.
+            let kept = stated.filter(|_| kind == "LINEAR").map_or(String::new(), |k| {
+                format!(" (to keep it: compliance.power = {{ pressure = {k:?}, penetration = 1 }} in the contact)")
+            });
             let message = format!(
-                "*{}, {kind}: its stiffness{stiffness} is left out; here surfaces do not penetrate",
+                "*{}, {kind}: its stiffness{stiffness} is left out; here surfaces do not penetrate{kept}",
                 card.keyword
             );
             self.deck.remark(card.line, message);

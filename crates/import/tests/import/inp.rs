@@ -85,7 +85,7 @@ fn a_deck_becomes_bodies_supports_loads_and_contacts() {
     assert_eq!((step.to, step.increments), (1.0, 4));
     let written = case_of("cubes.inp", &text);
     for line in [
-        "# - line 42: *SURFACE BEHAVIOR, LINEAR: its stiffness 10000000.0 is left out; here surfaces do not penetrate",
+        "# - line 42: *SURFACE BEHAVIOR, LINEAR: its stiffness 10000000.0 is left out; here surfaces do not penetrate (to keep it: compliance.power = { pressure = 10000000.0, penetration = 1 } in the contact)",
         "material.linear_elastic = { youngs_modulus = 210000.0, poissons_ratio = 0.3 }",
         "connected_to = 11",
         "sides.pressure = [\"2 2\"]",

@@ -34,6 +34,8 @@ pub struct ContactLaw {
     pub(crate) kept: Vec<[f64; 3]>,
     /// What else each point remembers.
     pub(crate) history: Vec<PointHistory>,
+    /// Distance of neighbouring points, about.
+    spacing: f64,
     /// Whether no state was accepted yet.
     is_new: bool,
     /// Times of the last state and of the one that is looked for.
@@ -84,7 +86,7 @@ pub(crate) struct PointMeasure {
 /// point. More than the tolerance of Newton's method, which ends that near to the limit.
 const AT_LIMIT: f64 = 1e-7;
 
-/// Gap at the start, relative to the width of a point, up to which a bond holds: more than meshes that do not match leave
+/// Gap at the start, relative to the distance of points, up to which a bond holds: more than meshes that do not match leave
 /// between curved surfaces.
 const BONDED: f64 = 0.02;
 
@@ -103,6 +105,7 @@ impl ContactLaw {
             softness: enforcement.softness(),
             kept: vec![[0.0; 3]; stiffness.len()],
             history: vec![PointHistory::default(); stiffness.len()],
+            spacing: 0.0,
             is_new: true,
             stiffness,
             areas,
@@ -146,12 +149,11 @@ impl ContactLaw {
     /// What a point remembers of a state with these trials; without them nothing met it there.
     pub(crate) fn remembered(&self, k: usize, at: Option<(&PointMeasure, [f64; 3], &Projected)>) -> PointHistory {
         let before = self.history[k];
-        let remembers = |law: &&Box<dyn Law>| law.least_scale() > 0.0 || law.wear() > 0.0;
-        let Some(law) = self.friction.as_ref().filter(remembers) else { return before };
+        let remembers = |law: &&dyn Law| law.least_scale() > 0.0 || law.wear() > 0.0;
+        let Some(law) = self.friction.as_deref().filter(remembers) else { return before };
         if self.is_new && law.is_bond() {
-            let width = self.areas[k].powf(if self.in_plane.is_some() { 1.0 } else { 0.5 });
             return match at {
-                Some((measure, ..)) if measure.gap.abs() <= BONDED * width => {
+                Some((measure, ..)) if measure.gap.abs() <= BONDED * self.spacing => {
                     PointHistory { offset: -measure.gap, ..before }
                 }
                 _ => PointHistory { opened: f64::MAX, ..before },
@@ -173,8 +175,9 @@ impl ContactLaw {
         }
     }
 
-    /// Raises the scales of trials to what the law asks for.
-    pub(crate) fn steepen(&mut self) {
+    /// Raises the scales of trials to what the law asks for, and takes the distance of neighbouring points.
+    pub(crate) fn prepare(&mut self, spacing: f64) {
+        self.spacing = spacing;
         let least = self.friction.as_ref().map_or(0.0, |law| law.least_scale());
         self.stiffness.iter_mut().for_each(|c| *c = c.max(least));
     }

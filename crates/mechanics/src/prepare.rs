@@ -3,6 +3,7 @@
 use crate::increment_error::IncrementError;
 use crate::interaction::Bodies;
 use crate::linear_bodies::LinearBodies;
+use crate::surface::Faces;
 use crate::system::{AssemblyError, System};
 
 impl System {
@@ -17,7 +18,16 @@ impl System {
         // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
         let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
         self.contacts.iter_mut().for_each(|contact| contact.prepare(&self.bodies, scale));
-        self.contacts.iter_mut().for_each(|contact| contact.law_mut().steepen());
+        for contact in &mut self.contacts {
+            let part = contact.parts()[0];
+            let body = &self.bodies[part.body];
+            let start = body.start();
+            let surface = body.surface(part.group.as_deref(), &start);
+            let is_plane = surface.is_some_and(|surface| matches!(surface.faces().0, Faces::Plane(_)));
+            let count = contact.law().areas.len().max(1) as f64;
+            let spacing = body.size() / if is_plane { count } else { count.sqrt() };
+            contact.law_mut().prepare(spacing);
+        }
         // What cannot move carries nothing: supports carry there, and what the contact would carry is not determined.
         let start = self.start();
         let (single, _) = self.held(&start.bodies, 0.0).map_err(IncrementError::Assembly)?;

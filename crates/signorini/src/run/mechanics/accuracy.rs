@@ -76,11 +76,11 @@ fn finer(problem: &Problem) -> Option<Finer> {
 impl Finer {
     /// The plans that are finer, if they grow by no more than so many times along a line: with functions of one degree more, and
     /// with cells of half the size. One alone may agree with the run by chance, as where a zone ends in the same cell.
-    fn plans(&self, problem: &Problem, most: f64) -> Vec<Box<MechanicsPlan>> {
+    fn plans(&self, problem: &Problem, most: f64) -> Vec<MechanicsPlan> {
         let raised = self.raised.as_ref().filter(|(_, growth)| *growth <= most);
         let raised = raised.and_then(|(raised, _)| crate::plan::plan(raised).ok());
         let halved = if self.halves && most >= 2.0 { crate::plan::halved(problem).ok() } else { None };
-        let system = |plan| if let Plan::Mechanics(plan) = plan { Some(plan) } else { None };
+        let system = |plan| if let Plan::Mechanics(plan) = plan { Some(*plan) } else { None };
         raised.into_iter().chain(halved).filter_map(system).collect()
     }
 }
@@ -108,7 +108,7 @@ pub fn estimate(
     let taken: usize = record.iter().chain([&*step]).map(|s| s.iterations).sum();
     for plan in finer.plans(&plan.head.problem, most) {
         let mut quiet = Quiet { of: progress, left: PATIENCE * taken };
-        let Some(fine) = last_step(MechanicsModel::new(*plan), &mut quiet) else { continue };
+        let Some(fine) = last_step(MechanicsModel::new(plan), &mut quiet) else { continue };
         for (name, found) in &mut step.contacts {
             let Some(fine) = fine.contacts.get(name) else { continue };
             let force: f64 = fine.force.iter().zip(&found.force).map(|(a, b)| (a - b).powi(2)).sum();

@@ -1,7 +1,7 @@
 //! Finite-element solids as bodies of a system: unknowns `D f + i` for the hierarchic function `f` in direction `i`.
 //!
 //! The stiffness of linear elasticity is that of [`stiffness`](crate::stiffness), added up once; for all other laws forces and
-//! tangent are integrated from a [`StressLaw`](crate::StressLaw), with the same projection of the dilatation where low degrees or a material
+//! tangent are integrated from a [`StressLaw`], with the same projection of the dilatation where low degrees or a material
 //! that hardly compresses would lock. Contact is tested and met where the body is now, also at small strain.
 
 mod border;

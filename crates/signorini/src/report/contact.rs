@@ -52,7 +52,7 @@ pub struct ContactReport {
     /// Smallest eigenvalue of the second variation of the energy. The state is stable if it is positive.
     pub lowest_eigenvalue: Option<f64>,
     /// Estimated discretisation error in the last increment of a step. It is computed with functions of one degree
-    /// more, or with cells of half the size.
+    /// more and with cells of half the size; the larger change counts.
     pub error_estimate: Option<ErrorEstimate>,
     /// Other equilibria at the same load: area, energy and stability.
     pub other_states: Vec<OtherState>,

@@ -41,17 +41,20 @@ struct Finer {
     raised: Option<(Problem, f64)>,
     /// Whether cells may be halved.
     halves: bool,
+    /// Whether halved cells keep the shape of the bodies: of linear cells with curved sides they keep the facets.
+    keeps_shape: bool,
 }
 
 /// None with bodies whose functions have no degree, ropes and beams, or where all bodies are rigid.
 fn finer(problem: &Problem) -> Option<Finer> {
     let mut raised = problem.clone();
     let mut least = None::<i64>;
-    let (mut is_known, mut halves, mut deforms) = (true, true, false);
+    let (mut is_known, mut halves, mut deforms, mut is_straight) = (true, true, false, true);
     for body in raised.bodies.values_mut() {
         let (degree, usual) = match body {
             Body::Solid(solid) => {
                 let of_box = matches!(solid.mesh, SolidMesh::Box(_)).then_some(1);
+                is_straight &= matches!(&solid.mesh, SolidMesh::Box(b) if b.map.is_none());
                 (&mut solid.degree, of_box)
             }
             Body::Cells(cells) => {
@@ -70,7 +73,8 @@ fn finer(problem: &Problem) -> Option<Finer> {
         least = Some(least.map_or(own, |l| l.min(own)));
     }
     let raised = least.filter(|_| is_known).map(|degree| (raised, 1.0 + 1.0 / degree as f64));
-    deforms.then_some(Finer { raised, halves })
+    let keeps_shape = is_straight || least.is_some_and(|degree| degree >= 2);
+    deforms.then_some(Finer { raised, halves, keeps_shape })
 }
 
 impl Finer {
@@ -79,7 +83,8 @@ impl Finer {
     fn plans(&self, problem: &Problem, most: f64) -> Vec<MechanicsPlan> {
         let raised = self.raised.as_ref().filter(|(_, growth)| *growth <= most);
         let raised = raised.and_then(|(raised, _)| crate::plan::plan(raised).ok());
-        let halved = if self.halves && most >= 2.0 { crate::plan::halved(problem).ok() } else { None };
+        let suits = self.keeps_shape || raised.is_none();
+        let halved = if self.halves && suits && most >= 2.0 { crate::plan::halved(problem).ok() } else { None };
         let system = |plan| if let Plan::Mechanics(plan) = plan { Some(*plan) } else { None };
         raised.into_iter().chain(halved).filter_map(system).collect()
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from functools import cached_property
 from typing import Any, Callable, Iterable, List, Mapping, Optional, Type, Union
 
 import numpy as np
@@ -237,7 +238,6 @@ class Closest:
     certified: np.ndarray
     certified_to: np.ndarray
     lambda_min: np.ndarray
-    others: List[Record]
 
     def __init__(self, found: dict) -> None:
         real = lambda name: np.frombuffer(found[name], "<f8")
@@ -253,12 +253,16 @@ class Closest:
         for name in ("feature_a", "feature_b", "uniqueness"):
             setattr(self, name, np.array(found[name]))
         self.certified = whole("certified").astype(bool)
-        ends = np.concatenate([[0], np.cumsum(whole("others"))])
-        further = [real("others_distance"), real("others_a").reshape(-1, 3), real("others_b").reshape(-1, 3)]
+        self._ends = np.concatenate([[0], np.cumsum(whole("others"))])
+        self._further = [real("others_distance"), real("others_a").reshape(-1, 3), real("others_b").reshape(-1, 3)]
+
+    @cached_property
+    def others(self) -> List[Record]:
+        """For each pair the further minimisers."""
+        # Tables of pairs by the thousand take longer than the search: they are made where they are asked for.
         names = ("distance", "point_a", "point_b")
-        self.others = []
-        for a, b in zip(ends, ends[1:]):
-            self.others.append(Record({name: values[a:b] for name, values in zip(names, further)}))
+        tables = zip(self._ends, self._ends[1:])
+        return [Record({name: values[a:b] for name, values in zip(names, self._further)}) for a, b in tables]
 
     def __len__(self) -> int:
         return len(self.distance)

@@ -35,6 +35,7 @@ mod statement;
 mod sweep;
 mod systems;
 mod unit;
+mod verify;
 mod words;
 
 #[path = "../../examples/04_cells.rs"]

@@ -1,6 +1,6 @@
 //! Whether the tractions that were told are those of contact: pressure pushes, friction stays within its limit, is at it where
-//! bodies slip, and acts against the slip; whether rough surfaces are as far apart as their pressure says, and worn ones by as
-//! much as Archard's law says. All in the mean over a contact, by what each place stands for.
+//! bodies slip, and acts against the slip; whether rough surfaces are as far apart as their pressure says. All in the mean over
+//! a contact, by what each place stands for.
 
 use crate::finding::{Check, Finding, Outcome};
 use crate::state::{Contact, Form, Law, Setting, State, Touch};

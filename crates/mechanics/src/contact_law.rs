@@ -34,8 +34,8 @@ pub struct ContactLaw {
     pub(crate) kept: Vec<[f64; 3]>,
     /// What else each point remembers.
     pub(crate) history: Vec<PointHistory>,
-    /// Distance of neighbouring points, about.
-    spacing: f64,
+    /// Distance of neighbouring points, about, where a bond asks for it.
+    pub(crate) spacing: f64,
     /// Whether no state was accepted yet.
     is_new: bool,
     /// Times of the last state and of the one that is looked for.
@@ -175,9 +175,8 @@ impl ContactLaw {
         }
     }
 
-    /// Raises the scales of trials to what the law asks for, and takes the distance of neighbouring points.
-    pub(crate) fn prepare(&mut self, spacing: f64) {
-        self.spacing = spacing;
+    /// Raises the scales of trials to what the law asks for.
+    pub(crate) fn steepen(&mut self) {
         let least = self.friction.as_ref().map_or(0.0, |law| law.least_scale());
         self.stiffness.iter_mut().for_each(|c| *c = c.max(least));
     }

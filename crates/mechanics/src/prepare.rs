@@ -1,5 +1,6 @@
 //! What contacts need before the first increment: scales of penalties, and where slips count from.
 
+use crate::contact_law::ContactLaw;
 use crate::increment_error::IncrementError;
 use crate::interaction::Bodies;
 use crate::linear_bodies::LinearBodies;
@@ -18,7 +19,12 @@ impl System {
         // Between rigid bodies any scale serves; that of one force per length is neither large nor small.
         let scale = if scale > 0.0 { scale } else { 1.0 / self.size().max(f64::MIN_POSITIVE) };
         self.contacts.iter_mut().for_each(|contact| contact.prepare(&self.bodies, scale));
+        let bonds = |law: &ContactLaw| law.friction.as_ref().is_some_and(|law| law.is_bond());
         for contact in &mut self.contacts {
+            contact.law_mut().steepen();
+            if !bonds(contact.law()) {
+                continue;
+            }
             let part = contact.parts()[0];
             let body = &self.bodies[part.body];
             let start = body.start();
@@ -26,7 +32,7 @@ impl System {
             let is_plane = surface.is_some_and(|surface| matches!(surface.faces().0, Faces::Plane(_)));
             let count = contact.law().areas.len().max(1) as f64;
             let spacing = body.size() / if is_plane { count } else { count.sqrt() };
-            contact.law_mut().prepare(spacing);
+            contact.law_mut().spacing = spacing;
         }
         // What cannot move carries nothing: supports carry there, and what the contact would carry is not determined.
         let start = self.start();

@@ -18,7 +18,7 @@
 //! opening while damage grows solves `(z_n/(T + c δ))² + (z_t/(ηT + c δ/η))² = 1`, which has one root if `c` is above the
 //! steepest descent of `T`: the law asks for that ([`least_scale`](Law::least_scale)).
 
-use super::{Friction, Law, LawError, LawPoint, Projected, Status, checked};
+use super::{Friction, Law, LawError, LawPoint, Projected, Status, checked, free, rubbing};
 
 /// How the traction falls once the strength was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,12 +182,7 @@ impl Cohesion {
         // At no pressure they are held, not apart.
         let p = trial[0].max(f64::MIN_POSITIVE);
         let friction = self.friction.friction_at([trial[1], trial[2]], p, point);
-        let (t, d, r) = (friction.traction, friction.by_trial, friction.by_pressure);
-        Projected {
-            traction: [trial[0], t[0], t[1]],
-            derivative: [[1.0, 0.0, 0.0], [r[0], d[0][0], d[0][1]], [r[1], d[1][0], d[1][1]]],
-            status: if friction.slips { Status::Slip } else { Status::Stick },
-        }
+        rubbing(&friction, trial[0], [1.0, 0.0, 0.0])
     }
 
     /// Pressed together, with a bond along the surface: what is damaged of it rubs.
@@ -203,8 +198,7 @@ impl Cohesion {
         // and part.
         let slip = |b: f64, damaged: f64| {
             let tau: [f64; 2] = std::array::from_fn(|i| along[i] - b * point.slipped[i]);
-            let none = Friction { traction: [0.0; 2], by_trial: [[0.0; 2]; 2], by_pressure: [0.0; 2], slips: true };
-            let friction = if damaged * p > 0.0 { self.friction.friction_at(tau, damaged * p, point) } else { none };
+            let friction = if damaged * p > 0.0 { self.friction.friction_at(tau, damaged * p, point) } else { free() };
             let new: [f64; 2] = std::array::from_fn(|i| (tau[i] - friction.traction[i]) / (c + b));
             (friction, new)
         };

@@ -7,7 +7,7 @@
 //!
 //! With the trial `ζ = p - c g` the pressure is an implicit function of `ζ`, increasing, with a slope below one.
 
-use super::{Friction, Law, LawError, LawPoint, checked};
+use super::{Friction, Law, LawError, LawPoint, checked, free};
 
 /// How the pressure follows from the gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,8 +105,7 @@ impl Law for Rough {
     }
 
     fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
-        let none = || Friction { traction: [0.0; 2], by_trial: [[0.0; 2]; 2], by_pressure: [0.0; 2], slips: true };
-        self.friction.as_ref().map_or_else(none, |law| law.friction_at(trial, pressure, point))
+        self.friction.as_ref().map_or_else(free, |law| law.friction_at(trial, pressure, point))
     }
 
     fn pressure(&self, trial: f64, point: &LawPoint) -> [f64; 2] {

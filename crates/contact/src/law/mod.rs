@@ -188,14 +188,24 @@ pub trait Law: std::fmt::Debug + Send + Sync {
             return Projected { traction: [pressure, 0.0, 0.0], derivative, status: Status::Slip };
         }
         let friction = self.friction_at([trial[1], trial[2]], pressure, point);
-        let [t, r, d] = [friction.traction, friction.by_pressure, friction.by_trial[0]];
-        let e = friction.by_trial[1];
-        Projected {
-            traction: [pressure, t[0], t[1]],
-            derivative: [[by_trial, 0.0, 0.0], [r[0] * by_trial, d[0], d[1]], [r[1] * by_trial, e[0], e[1]]],
-            status: if friction.slips { Status::Slip } else { Status::Stick },
-        }
+        rubbing(&friction, pressure, [by_trial, 0.0, 0.0])
     }
+}
+
+/// A pressure, with its derivatives in the trials, and the friction under it.
+fn rubbing(friction: &Friction, pressure: f64, by: [f64; 3]) -> Projected {
+    let (t, d, r) = (friction.traction, friction.by_trial, friction.by_pressure);
+    let row = |i: usize| [r[i] * by[0], r[i] * by[1] + d[i][0], r[i] * by[2] + d[i][1]];
+    Projected {
+        traction: [pressure, t[0], t[1]],
+        derivative: [by, row(0), row(1)],
+        status: if friction.slips { Status::Slip } else { Status::Stick },
+    }
+}
+
+/// No friction at all.
+fn free() -> Friction {
+    Friction { traction: [0.0; 2], by_trial: [[0.0; 2]; 2], by_pressure: [0.0; 2], slips: true }
 }
 
 /// The pressure of bodies that may not penetrate, with its derivative: its trial, if that presses.

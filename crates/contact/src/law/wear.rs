@@ -7,7 +7,7 @@
 //!
 //! What was worn off before is part of the gap.
 
-use super::{Friction, Law, LawError, LawPoint, Projected, Status, checked};
+use super::{Friction, Law, LawError, LawPoint, Projected, checked, rubbing};
 
 /// Wear with the friction of another law or none.
 #[derive(Debug)]
@@ -88,17 +88,10 @@ impl Law for Worn {
             }
         }
         let (friction, _, unit, slope) = at(p);
-        let (t, d, r) = (friction.traction, friction.by_trial, friction.by_pressure);
+        let d = friction.by_trial;
         // How the slip changes with its trial at this pressure.
         let left = |j: usize| (0..2).map(|i| unit[i] * (f64::from(u8::from(i == j)) - d[i][j])).sum::<f64>();
         let p_by = [1.0 / slope, -k * p * left(0) / slope, -k * p * left(1) / slope];
-        let mut derivative = [p_by, [0.0; 3], [0.0; 3]];
-        for i in 0..2 {
-            for (j, by) in p_by.iter().enumerate() {
-                derivative[i + 1][j] = r[i] * by + if j > 0 { d[i][j - 1] } else { 0.0 };
-            }
-        }
-        let status = if friction.slips { Status::Slip } else { Status::Stick };
-        Projected { traction: [p, t[0], t[1]], derivative, status }
+        rubbing(&friction, p, p_by)
     }
 }

@@ -28,10 +28,10 @@ use motion::Motion;
 use signorini_contact::Law;
 
 impl System {
-    /// Whether all that moves is rigid and touches in points, with friction that knows no time.
+    /// Whether all that moves is rigid and touches in points, with friction that knows no time and surfaces that do not wear.
     pub fn is_rigid(&self) -> bool {
         let suits = |c: &Contact| {
-            let by_state = |law: &dyn Law| law.is_rate_dependent() || law.is_compliant();
+            let by_state = |law: &dyn Law| law.is_rate_dependent() || law.is_compliant() || law.wear() > 0.0;
             let by_state = c.law.friction.as_deref().is_some_and(by_state);
             c.law.enforcement == Enforcement::AugmentedLagrangian && !by_state && self.bodies[c.master.body].is_rigid()
         };

@@ -301,3 +301,23 @@ to = 1
         assert!((-head / exact - 1.0).abs() < error && (head + foot).abs() < 1e-8, "{head} {foot} {exact}");
     }
 }
+
+/// A rigid ball on a plane that is drawn along below it sinks by the wear of its force, in one increment or in two.
+#[test]
+fn a_ball_that_wears_sinks() {
+    for increments in [1, 2] {
+        let case = format!(
+            "space = \"3d\"\n[bodies.ball.rigid]\nshape.sphere = {{ center = [0, 1, 0], radius = 1 }}\n\
+             motion.free = {{}}\n[bodies.floor.rigid]\n\
+             shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n\
+             motion.prescribed = {{ displacement = [\"t\", 0, 0] }}\n[supports.hold]\non = \"ball\"\n\
+             displacement = [0, \"free\", 0]\nrotation = [0, 0, 0]\n[loads.weight]\non = \"ball\"\n\
+             force = [0, -1, 0]\n[contacts.c]\nbetween = [\"ball\", \"floor\"]\nfriction.coulomb = {{ mu = 0.2 }}\n\
+             wear = 1e-2\n[[steps]]\nto = 1\nincrements = {increments}\n"
+        );
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found);
+        let (force, depth) = (at(step, "/contacts/c/force/0"), at(step, "/free_bodies/ball/displacement/1"));
+        assert!((force - 0.2).abs() < 1e-9 && (depth + 1e-2).abs() < 1e-9, "{force} {depth}");
+    }
+}

@@ -29,7 +29,7 @@ pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{DualWeights, compress, dual_weights_unmerged, shares, weightless};
 pub use multiplier::{MergedNode, PressureNodes};
 pub use recovery::{Pressed, recovered, unpressed};
-pub use segments::{GapPoint, pieces, segments, whole_faces};
+pub use segments::{GapPoint, Sight, pieces, segments, whole_faces};
 pub use signorini_geometry::rigid_shape::GapJet;
 pub use surface::{ContactSurface, Moved, ShapeFunction, is_facing};
 pub use zone::{ContactZone, NodeState, connected, zone};

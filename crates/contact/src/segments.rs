@@ -21,19 +21,34 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::{Aabb, Point};
 use space::polygons;
 
-/// The points of every slave face that see a master face no farther away than `reach`; `sees` tells which slave face may touch
-/// which master face.
+/// What a slave face may see.
+#[derive(Clone, Copy)]
+pub struct Sight<'a> {
+    /// The largest gap.
+    pub reach: f64,
+    /// The deepest penetration of a slave face, if it is less than the reach.
+    pub deepest: &'a (dyn Fn(usize) -> f64 + Sync),
+    /// Whether a slave face may touch a master face.
+    pub sees: &'a (dyn Fn(usize, usize) -> bool + Sync),
+}
+
+impl Sight<'_> {
+    /// Whether a slave face sees what is at a gap.
+    pub(crate) fn includes(&self, face: usize, gap: f64) -> bool {
+        gap <= self.reach && gap >= -self.reach.min((self.deepest)(face))
+    }
+}
+
+/// The points of every slave face that see a master face.
 pub fn segments<const D: usize>(
     slave: &dyn ContactSurface<D>,
     master: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
-    reach: f64,
-    sees: &dyn Fn(usize, usize) -> bool,
+    sight: Sight<'_>,
 ) -> Vec<Vec<GapPoint<D>>> {
-    let mut candidates = candidates(slave, master, nodes, reach);
-    candidates.iter_mut().enumerate().for_each(|(face, list)| list.retain(|other| sees(face, *other)));
+    let candidates = candidates(slave, master, nodes, sight);
     let cut =
-        |face: usize, extra: usize| pieces_of_face(Cut { slave, master, nodes, reach, extra }, face, &candidates[face]);
+        |face: usize, extra: usize| pieces_of_face(Cut { slave, master, nodes, sight, extra }, face, &candidates[face]);
     let mut points: Vec<Vec<GapPoint<D>>> = (0..slave.face_count()).map(|face| cut(face, 0)).collect();
     // A constant pressure must load every function of both sides with its integral. On distorted faces the integrands
     // are no polynomials: more points are used as long as they help.
@@ -62,17 +77,15 @@ pub fn segments<const D: usize>(
 }
 
 /// The same with a rule that does not depend on the position of the sides: what changes with them changes without jumps.
-/// `extra` are further points for each direction of a piece; `sees` tells which slave face may touch which master face.
+/// `extra` are further points for each direction of a piece.
 pub fn pieces<const D: usize>(
     slave: &dyn ContactSurface<D>,
     master: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
-    (reach, extra): (f64, usize),
-    sees: &dyn Fn(usize, usize) -> bool,
+    (sight, extra): (Sight<'_>, usize),
 ) -> Vec<Vec<GapPoint<D>>> {
-    let mut candidates = candidates(slave, master, nodes, reach);
-    candidates.iter_mut().enumerate().for_each(|(face, list)| list.retain(|other| sees(face, *other)));
-    let cut = Cut { slave, master, nodes, reach, extra };
+    let candidates = candidates(slave, master, nodes, sight);
+    let cut = Cut { slave, master, nodes, sight, extra };
     let of = |(face, list): (usize, &Vec<usize>)| pieces_of_face(cut, face, list);
     candidates.par_iter().enumerate().map(of).collect()
 }
@@ -155,7 +168,7 @@ fn candidates<const D: usize>(
     slave: &dyn ContactSurface<D>,
     master: &dyn ContactSurface<D>,
     nodes: &PressureNodes<D>,
-    reach: f64,
+    sight: Sight<'_>,
 ) -> Vec<Vec<usize>> {
     let embed = |x: &Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
     let bounds = |points: &[Point<3>], margin: f64| {
@@ -169,8 +182,8 @@ fn candidates<const D: usize>(
             let mut points = Vec::new();
             for (s, (_, normal)) in nodes.map(face).nodes().iter().zip(nodes.of_face(face)) {
                 let x = slave.at(face, s).x;
-                points.push(embed(&(x + normal * reach)));
-                points.push(embed(&(x - normal * reach)));
+                points.push(embed(&(x + normal * sight.reach)));
+                points.push(embed(&(x - normal * sight.reach)));
             }
             bounds(&points, 1e-3)
         })
@@ -188,7 +201,7 @@ fn candidates<const D: usize>(
         return lists;
     }
     let pairs = Bvh::new(&slave_boxes).pairs_within(&Bvh::new(&master_boxes), (&slave_boxes, &master_boxes), 0.0);
-    for (i, j) in pairs {
+    for (i, j) in pairs.into_iter().filter(|(i, j)| (sight.sees)(*i, *j)) {
         lists[i].push(j);
     }
     lists
@@ -198,6 +211,8 @@ fn candidates<const D: usize>(
 mod tests {
     use super::*;
     use crate::testing::Polyline;
+
+    const ANY: Sight<'_> = Sight { reach: 1.0, deepest: &|_| f64::INFINITY, sees: &|_, _| true };
 
     /// A slave from 0 to 2 at height 0.1 + 0.05 x over a master from 0.25 to 3 with other faces.
     fn sides() -> (Polyline, Polyline) {
@@ -210,7 +225,7 @@ mod tests {
     fn points_cover_what_both_sides_have_in_common_with_their_gaps() {
         let (slave, master) = sides();
         let nodes = PressureNodes::new(&slave);
-        let points = segments(&slave, &master, &nodes, 1.0, &|_, _| true);
+        let points = segments(&slave, &master, &nodes, ANY);
         let slope = 0.05f64.hypot(1.0);
         let (mut length, mut moment) = (0.0, 0.0);
         for (face, p) in points.iter().enumerate().flat_map(|(face, list)| list.iter().map(move |p| (face, p))) {
@@ -234,7 +249,7 @@ mod tests {
         let (slave, master) = sides();
         let nodes = PressureNodes::new(&slave);
         let away = Polyline(master.0.iter().rev().copied().collect());
-        assert!(segments(&slave, &away, &nodes, 1.0, &|_, _| true).iter().all(Vec::is_empty));
-        assert!(segments(&slave, &master, &nodes, 0.05, &|_, _| true).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &away, &nodes, ANY).iter().all(Vec::is_empty));
+        assert!(segments(&slave, &master, &nodes, Sight { reach: 0.05, ..ANY }).iter().all(Vec::is_empty));
     }
 }

@@ -15,6 +15,8 @@
 //! apart along the surface: zero in a rigid motion of both sides, and without derivatives of projections.
 //!
 //! The tangent is exact but for the ends of the covered part: where the cuts within it move, the integrand does not jump.
+//! A surface in contact with itself has both roles, each face one of them ([`within`]).
+//!
 //! A rigid master is tested at the points of a rule on whole slave faces.
 
 mod across;
@@ -31,6 +33,7 @@ mod saved;
 mod shown;
 mod small;
 mod terms;
+mod within;
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact_law::{ContactLaw, PointHistory, PointMeasure};
@@ -152,6 +155,11 @@ impl Mortar {
     /// Whether the first axis of the law stands on a plane problem.
     fn is_across(&self) -> bool {
         matches!(self.axis, AxisChoice::OnSlave(v) | AxisChoice::OnMaster(v) if v.z.abs() > v.xy().norm())
+    }
+
+    /// Whether both sides are of one body.
+    fn is_within(&self) -> bool {
+        self.slave.body == self.master.body
     }
 
     /// Whether enough of a node sees the master, and did at the last state.

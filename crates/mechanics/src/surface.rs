@@ -35,6 +35,9 @@ pub trait Surface: Sync {
     /// A point as one that is tested.
     fn placed(&self, face: usize, s: &Local) -> SlavePoint;
 
+    /// The depth of the cell behind a face.
+    fn depth(&self, face: usize) -> f64;
+
     /// The force per area that moves a face by a unit of length, about: the scale of penalties.
     fn stiffness(&self, face: usize) -> f64;
 }

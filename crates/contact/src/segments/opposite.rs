@@ -1,5 +1,6 @@
 //! Points of a slave face and the master points opposite them.
 
+use super::Sight;
 use crate::multiplier::PressureNodes;
 use crate::surface::ContactSurface;
 use signorini_basis::Local;
@@ -26,8 +27,7 @@ pub(super) struct Cut<'a, const D: usize> {
     pub master: &'a dyn ContactSurface<D>,
     /// The nodes of the slave, along whose normals points lie opposite each other.
     pub nodes: &'a PressureNodes<D>,
-    /// The largest gap of points that see each other.
-    pub reach: f64,
+    pub sight: Sight<'a>,
     /// Further points of the rule of a piece, for each direction.
     pub extra: usize,
 }

@@ -6,7 +6,7 @@ use signorini_basis::hierarchic::Values;
 use signorini_basis::rules::rule;
 
 pub(super) fn intervals<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize]) -> Vec<GapPoint<D>> {
-    let Cut { slave, master, nodes, reach, extra } = cut;
+    let Cut { slave, master, nodes, sight, extra } = cut;
     let mut at = Values::default();
     let mut spans = Vec::new();
     let mut breaks = vec![-1.0, 1.0];
@@ -48,7 +48,7 @@ pub(super) fn intervals<const D: usize>(cut: Cut<'_, D>, face: usize, candidates
             .filter(|(_, span)| span[0] <= middle && middle <= span[1])
             .filter_map(|(other, _)| {
                 let (_, gap) = onto_master(master, *other, &x, &normal.normalize(), [0.0; 3])?;
-                (gap.abs() <= reach).then_some((gap.abs(), *other))
+                sight.includes(face, gap).then_some((gap.abs(), *other))
             })
             .min_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         let Some((_, other)) = seen else { continue };

@@ -203,7 +203,7 @@ fn over(polygon: &[Flat], rule: &Rule) -> Vec<(Flat, f64)> {
 }
 
 pub(super) fn polygons<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize]) -> Vec<GapPoint<D>> {
-    let Cut { slave, master, nodes, reach, extra } = cut;
+    let Cut { slave, master, nodes, sight, extra } = cut;
     let space = |x: &Point<D>| Vector::<3>::from_fn(|k, _| x[k]);
     let mut at = Values::default();
     let mut points = Vec::new();
@@ -245,7 +245,7 @@ pub(super) fn polygons<const D: usize>(cut: Cut<'_, D>, face: usize, candidates:
                     let n = n.normalize();
                     let (start, _) = of_facet(&part.corners, &inside(&unreversed, &p).0);
                     let Some((eta, gap)) = onto_master(master, *other, &point.x, &n, start) else { continue };
-                    if gap.abs() > reach {
+                    if !sight.includes(face, gap) {
                         continue;
                     }
                     let weight = w * density * point.area_normal().norm() * slave.measure(&point.x);
@@ -261,25 +261,29 @@ pub(super) fn polygons<const D: usize>(cut: Cut<'_, D>, face: usize, candidates:
             }
         }
     }
-    let area: f64 = rule(slave.shape(face), slave.degree(face).max(slave.order(face)) + 3)
-        .iter()
-        .map(|(s, w)| w * slave.at(face, s).area_normal().norm() * slave.measure(&slave.at(face, s).x))
-        .sum();
-    if points.iter().map(|p| p.weight).sum::<f64>() > area * (1.0 + 1e-6) {
+    if may_hide(slave, face, &points) {
         // Masters lie behind each other: of those on a line the nearest counts.
-        points.retain(|p| !is_hidden(slave, master, face, candidates, p));
+        points.retain(|p| !is_hidden(cut, face, candidates, p));
     }
     points
 }
 
+/// Whether masters may lie behind each other: points stand for more than the face, or their gaps differ by its size.
+fn may_hide<const D: usize>(slave: &dyn ContactSurface<D>, face: usize, points: &[GapPoint<D>]) -> bool {
+    let corners = slave.shape(face).vertices();
+    let size = (slave.at(face, &corners[1]).x - slave.at(face, &corners[0]).x).norm();
+    let ends = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p.gap), h.max(p.gap)]);
+    ends[1] - ends[0] > size || {
+        let of = |s: &Local| slave.at(face, s).area_normal().norm() * slave.measure(&slave.at(face, s).x);
+        let rule = rule(slave.shape(face), slave.degree(face).max(slave.order(face)) + 3);
+        let area: f64 = rule.iter().map(|(s, w)| w * of(s)).sum();
+        points.iter().map(|p| p.weight).sum::<f64>() > area * (1.0 + 1e-6)
+    }
+}
+
 /// Whether another face of the master is on the line of a point, and nearer.
-fn is_hidden<const D: usize>(
-    slave: &dyn ContactSurface<D>,
-    master: &dyn ContactSurface<D>,
-    face: usize,
-    candidates: &[usize],
-    point: &GapPoint<D>,
-) -> bool {
+fn is_hidden<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize], point: &GapPoint<D>) -> bool {
+    let Cut { slave, master, sight, .. } = cut;
     let x = slave.at(face, &point.s).x;
     let n = -point.direction;
     let own = point.master.map(|m| m.0 as usize);
@@ -293,7 +297,7 @@ fn is_hidden<const D: usize>(
         };
         // Faces that meet have the same gap along their edge.
         let nearer = point.gap.abs() - gap.abs() > 1e-6 * (point.gap.abs() + gap.abs());
-        within && nearer && master.at(m, &eta).area_normal().normalize().dot(&n) < FACING
+        within && nearer && sight.includes(face, gap) && master.at(m, &eta).area_normal().normalize().dot(&n) < FACING
     })
 }
 

@@ -5,13 +5,15 @@
 //! that are covered completely are then always the same.
 
 use super::facing::Facing;
+use super::within::{Sighting, Within};
 use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapPoint, MergedNode, Moved, PressureNodes, dual_weights_unmerged, pieces, segments, shares,
+    ContactSurface, GapPoint, MergedNode, Moved, PressureNodes, Sight, dual_weights_unmerged, pieces, segments, shares,
     whole_faces,
 };
 use signorini_geometry::{Point, Vector};
+use std::collections::BTreeMap;
 
 /// The nodes of the pressure, with normals of the averaged field.
 pub(super) enum Nodes {
@@ -106,6 +108,15 @@ impl Nodes {
         }
     }
 
+    /// Which faces of a surface see each other in a state.
+    pub fn sightings(&self, surface: &dyn Surface, (reach, within): (f64, &Within)) -> Vec<Sighting> {
+        match (self, surface.faces()) {
+            (Nodes::Plane(nodes), (Faces::Plane(of), u)) => sightings(nodes, of, (surface, u), (reach, within)),
+            (Nodes::Space(nodes), (Faces::Space(of), u)) => sightings(nodes, of, (surface, u), (reach, within)),
+            _ => Vec::new(),
+        }
+    }
+
     /// What of the slave side sees the master.
     pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: &Search, merged: &[bool]) -> FacingPart {
         match (self, slave.faces().0, master.faces().0) {
@@ -152,14 +163,15 @@ fn cut<const D: usize>(
         let normal = placed[0].normal(face, s);
         Point::<D>::from_fn(|k, _| normal[k])
     });
-    let sees = |face: usize, other: usize| search.facing.slave(face) && search.facing.master(other);
+    let sees = |face: usize, other: usize| search.facing.sees(face, other);
+    let sight = Sight { reach: search.reach, deepest: &|face| search.facing.deepest(face), sees: &sees };
     if search.at_rest {
-        let points = segments(slave, master, &nodes, search.reach, &sees);
+        let points = segments(slave, master, &nodes, sight);
         return cover(&nodes, slave, points, (merged, true));
     }
     let moved = Moved::new(slave, placed[0].faces().1);
     let other = Moved::new(master, placed[1].faces().1);
-    let mut points = pieces(&moved, &other, &nodes, (search.reach, search.extra), &sees);
+    let mut points = pieces(&moved, &other, &nodes, (sight, search.extra));
     for (face, list) in points.iter_mut().enumerate() {
         for point in list {
             let area = |faces: &dyn ContactSurface<D>| {
@@ -170,6 +182,33 @@ fn cut<const D: usize>(
         }
     }
     cover(&nodes, slave, points, (merged, false))
+}
+
+/// Which faces of a surface see each other, whatever their roles.
+fn sightings<const D: usize>(
+    nodes: &PressureNodes<D>,
+    faces: &dyn ContactSurface<D>,
+    (surface, u): (&dyn Surface, &[f64]),
+    (reach, within): (f64, &Within),
+) -> Vec<Sighting> {
+    let nodes = nodes.with_normals(&|face, s| {
+        let normal = surface.normal(face, s);
+        Point::<D>::from_fn(|k, _| normal[k])
+    });
+    let moved = Moved::new(faces, u);
+    let sees = |face: usize, other: usize| within.may_meet(face, other);
+    let sight = Sight { reach, deepest: &|face| within.deepest(face), sees: &sees };
+    let points = pieces(&moved, &moved, &nodes, (sight, 0));
+    let mut out = Vec::new();
+    for (face, list) in points.iter().enumerate() {
+        let mut nearest: BTreeMap<u32, f64> = BTreeMap::new();
+        for (point, (other, _)) in list.iter().filter_map(|p| Some((p, p.master?))) {
+            let distance = nearest.entry(other).or_insert(f64::INFINITY);
+            *distance = distance.min(point.gap.abs());
+        }
+        out.extend(nearest.into_iter().map(|(master, distance)| Sighting { slave: face as u32, master, distance }));
+    }
+    out
 }
 
 fn cover<const D: usize>(

@@ -1,5 +1,6 @@
 //! Which faces of whole bodies may touch each other: of two thin bodies that lie on each other only those between them.
 
+use super::within::Within;
 use crate::body::{Body, PlaceError};
 use crate::part::Part;
 use crate::points::Master;
@@ -15,6 +16,8 @@ pub(super) struct Facing {
     master: Option<Vec<bool>>,
     /// Whether no face of the slave looks at the master at the start.
     pub is_away: bool,
+    /// What may touch what, of two sides of one body.
+    pub within: Option<Within>,
 }
 
 impl Facing {
@@ -30,6 +33,11 @@ impl Facing {
     ) -> Result<Self, PlaceError> {
         let is_whole = |(part, body): (&Part, &dyn Body)| part.group.is_none() && body.is_linear();
         let states = [slave.1.start(), master.1.start()];
+        if slave.0.body == master.0.body {
+            let opposite = master.1.surface(master.0.group.as_deref(), &states[1]);
+            let within = opposite.map(|opposite| Within::new(surface, opposite.as_ref(), slave.0 == master.0));
+            return Ok(Facing { within, ..Facing::default() });
+        }
         let other = master.1.master(master.0.group.as_deref(), &states[1])?;
         let size = slave.1.size().min(if master.1.is_rigid() { f64::INFINITY } else { master.1.size() });
         let looks = looking(surface, (other.as_ref(), size));
@@ -48,8 +56,16 @@ impl Facing {
         self.slave.as_ref().is_none_or(|list| list[face])
     }
 
-    pub fn master(&self, face: usize) -> bool {
-        self.master.as_ref().is_none_or(|list| list[face])
+    /// Whether a face of the slave may touch one of the master.
+    pub fn sees(&self, face: usize, other: usize) -> bool {
+        self.slave(face)
+            && self.master.as_ref().is_none_or(|list| list[other])
+            && self.within.as_ref().is_none_or(|within| within.sees(face, other))
+    }
+
+    /// How deep a face of the slave may be inside of the master.
+    pub fn deepest(&self, face: usize) -> f64 {
+        self.within.as_ref().map_or(f64::INFINITY, |within| within.deepest(face))
     }
 }
 

@@ -22,6 +22,7 @@ use crate::part::Part;
 use crate::passage::{TrackedPoint, share_of_way};
 use crate::points::{MaterialPoint, SlavePoint};
 use crate::shown_surface::ShownSurface;
+use crate::surface::Surface;
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::Status;
@@ -70,6 +71,33 @@ impl Mortar {
     /// The nodes that see the master, with their measures.
     fn seen<'a>(&'a self, found: &'a Found<'_>) -> impl Iterator<Item = (usize, &'a NodeMeasure)> {
         found.measures.iter().enumerate().filter(|(k, m)| self.sees(*k, m.weight))
+    }
+
+    /// Gives the faces of a surface in contact with itself their roles, those that carry theirs. Whether any changed.
+    fn assign_roles(&mut self, slave: &dyn Surface, carries: Option<&Found<'_>>) -> bool {
+        let Some(within) = self.search.facing.within.as_mut().filter(|within| within.is_slave.is_some()) else {
+            return false;
+        };
+        let sightings = self.nodes.sightings(slave, (self.search.reach, within));
+        let mut carrying = Vec::new();
+        if let Some(found) = carries {
+            let is_closed = |(node, _): &(u32, f64)| found.projected[*node as usize].status != Status::Open;
+            let closed = found.measured.points().filter(|(point, _)| point.shares.iter().any(is_closed));
+            carrying.extend(closed.map(|(point, met)| (point.face as u32, met.on.patch)));
+        }
+        carrying.dedup();
+        within.assign(sightings, &carrying)
+    }
+
+    /// The points of the slave with what they meet now.
+    fn matched_in(&self, measured: &Measured) -> Vec<Matched> {
+        let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
+            face: point.face,
+            s: point.s,
+            on: met.on,
+            shares: point.shares.clone(),
+        };
+        if self.law.is_tangential() { measured.points().map(of).collect() } else { Vec::new() }
     }
 
     /// The nodes where they are in a state.
@@ -246,17 +274,12 @@ impl Interaction for Mortar {
             tractions.push(traction);
         }
         self.memory = memory;
-        self.law.history = found.next;
-        self.matched.clear();
-        if self.law.is_tangential() {
-            let of = |(point, met): (&CoveredPoint, &MetPoint)| Matched {
-                face: point.face,
-                s: point.s,
-                on: met.on,
-                shares: point.shares.clone(),
-            };
-            self.matched.extend(found.measured.points().map(of));
-        }
+        self.law.history.clone_from(&found.next);
+        // Small sliding keeps what sees what at rest.
+        self.matched = match self.small.is_none() && self.assign_roles(found.sides.slave.as_ref(), Some(&found)) {
+            true => self.matched_in(&found.sides.measured(self)),
+            false => self.matched_in(&found.measured),
+        };
         let displacements = [&self.slave, &self.master].map(|part| at.side(part).1.configuration.clone());
         if let Some(small) = &mut self.small {
             small.forget();
@@ -299,6 +322,7 @@ impl Iterated for Mortar {
     fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {
         self.small.iter_mut().for_each(SmallSliding::forget);
         let Ok(sides) = Sides::new(self, at) else { return };
+        self.assign_roles(sides.slave.as_ref(), None);
         for (k, (face, s)) in self.places.iter().enumerate() {
             let placed = sides.slave.placed(*face, s);
             let normal = sides.slave.normal(*face, s).normalize();
@@ -310,8 +334,11 @@ impl Iterated for Mortar {
         self.law.areas = super::weights(&self.whole);
     }
 
-    /// A body that only contact holds is pressed on it first where the gap is least.
+    /// A body that only contact with another one holds is pressed on it first where the gap is least.
     fn initial_multipliers(&self, at: Bodies<'_>, residual: &[f64]) -> Option<Vec<f64>> {
+        if self.is_within() {
+            return None;
+        }
         let mut out = self.law.multipliers();
         let found = self.found(at, &out, false).ok()?;
         let least = self.seen(&found).map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
@@ -324,6 +351,9 @@ impl Iterated for Mortar {
     }
 
     fn least_gap(&self, at: Bodies<'_>) -> Option<f64> {
+        if self.is_within() {
+            return None;
+        }
         let found = self.found(at, &self.law.multipliers(), false).ok()?;
         self.seen(&found).map(|(_, m)| m.gap).reduce(f64::min)
     }

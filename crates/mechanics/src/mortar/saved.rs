@@ -32,12 +32,15 @@ impl Mortar {
         }
         let since = self.small.iter().flat_map(|small| &small.since);
         let since: Vec<f64> = since.flat_map(|u| std::iter::once(u.len() as f64).chain(u.iter().copied())).collect();
+        let roles = self.search.facing.within.iter().flat_map(|within| within.is_slave.iter().flatten());
+        let roles: Vec<f64> = roles.map(|is_slave| f64::from(*is_slave)).collect();
         let scales = self
             .law
             .stiffness
             .iter()
             .chain(&[self.law.times[0]])
             .chain(self.turned.iter())
+            .chain(&roles)
             .chain(&since)
             .copied()
             .collect();
@@ -72,8 +75,14 @@ impl Mortar {
         self.law.stiffness.copy_from_slice(&scales[..count]);
         self.law.times = [scales[count]; 2];
         self.turned = Vector::<3>::from_column_slice(&scales[count + 1..count + 4]);
+        let mut rest = &scales[count + 4..];
+        if let Some(roles) = self.search.facing.within.as_mut().and_then(|within| within.is_slave.as_mut()) {
+            let (known, tail) = rest.split_at_checked(roles.len())?;
+            roles.iter_mut().zip(known).for_each(|(role, known)| *role = *known == 1.0);
+            rest = tail;
+        }
         if let Some(small) = &mut self.small {
-            let (length, rest) = scales[count + 4..].split_first()?;
+            let (length, rest) = rest.split_first()?;
             let (slave, rest) = rest.split_at_checked(*length as usize)?;
             let (_, master) = rest.split_first()?;
             small.since = [slave, master].map(<[f64]>::to_vec);

@@ -77,8 +77,12 @@ impl<const D: usize> signorini_mechanics::Surface for PlacedSurface<'_, D> {
         }
     }
 
+    fn depth(&self, face: usize) -> f64 {
+        self.faces.face(self.surface.faces[face]).depth
+    }
+
     /// Young's modulus over the depth of the cell, in parts of its degree.
     fn stiffness(&self, face: usize) -> f64 {
-        self.youngs_modulus * self.degree / self.faces.face(self.surface.faces[face]).depth
+        self.youngs_modulus * self.degree / self.depth(face)
     }
 }

@@ -21,9 +21,7 @@ impl Planner<'_> {
     ) -> Result<Option<(Box<dyn Interaction>, ContactInfo)>, CaseError> {
         let problem = self.problem;
         let body = |part: &Part| system.bodies[part.body].as_ref();
-        let unfit = if slave.body == master.body {
-            Some((slave, "has self-contact, but mortar couples two bodies"))
-        } else if !matches!(kinds[slave.body], Kind::Solid) {
+        let unfit = if !matches!(kinds[slave.body], Kind::Solid) {
             Some((slave, "has no faces for mortar: the slave must be a solid"))
         } else if !matches!(kinds[master.body], Kind::Solid | Kind::Rigid { .. }) {
             Some((master, "has no faces for mortar: the master must be a solid or a rigid body"))

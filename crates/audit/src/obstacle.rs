@@ -7,6 +7,7 @@ use signorini_geometry::bvh::Bvh;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::GapJet;
 use signorini_geometry::{Aabb, Point, Vector};
+use std::sync::OnceLock;
 
 /// A body that others may not reach into.
 pub enum Obstacle<'a> {
@@ -77,6 +78,8 @@ pub struct SolidNow<'a> {
     in_space: bool,
     cells: Bvh,
     facets: Bvh,
+    /// The cells at rest, once they are asked for.
+    at_rest: OnceLock<Bvh>,
 }
 
 fn around(points: &[Point<3>], list: &[u32]) -> Aabb<3> {
@@ -85,10 +88,14 @@ fn around(points: &[Point<3>], list: &[u32]) -> Aabb<3> {
     list.iter().fold(Aabb::new(first, first), |b, k| Aabb::new(b.min.inf(&x(k)), b.max.sup(&x(k))))
 }
 
+fn boxes(points: &[Point<3>], lists: &[Vec<u32>]) -> Bvh {
+    Bvh::new(&lists.iter().map(|l| around(points, l)).collect::<Vec<_>>())
+}
+
 impl<'a> SolidNow<'a> {
     pub fn new(solid: &'a Solid, points: &'a [Point<3>], in_space: bool) -> Self {
-        let boxes = |lists: &[Vec<u32>]| Bvh::new(&lists.iter().map(|l| around(points, l)).collect::<Vec<_>>());
-        SolidNow { solid, points, in_space, cells: boxes(&solid.cells), facets: boxes(&solid.boundary.facets) }
+        let [cells, facets] = [&solid.cells, &solid.boundary.facets].map(|lists| boxes(points, lists));
+        SolidNow { solid, points, in_space, cells, facets, at_rest: OnceLock::new() }
     }
 
     /// The distance of a point from the box around the body; of a body that shows nothing all is far away.
@@ -101,7 +108,7 @@ impl<'a> SolidNow<'a> {
         let mut inside = false;
         self.cells.nearest(x, 0.0, |k| {
             let cell = &self.solid.cells[k];
-            inside = inside || (!self.is_beside(cell, except) && self.cell_holds(cell, x));
+            inside = inside || (!self.is_beside(cell, except) && self.cell_holds(self.points, cell, x));
             0.0
         });
         inside
@@ -111,20 +118,25 @@ impl<'a> SolidNow<'a> {
         except.is_some_and(|(place, far)| list.iter().any(|k| (self.solid.rest[*k as usize] - place).norm() < far))
     }
 
-    fn cell_holds(&self, cell: &[u32], x: &Point<3>) -> bool {
+    fn cell_holds(&self, points: &[Point<3>], cell: &[u32], x: &Point<3>) -> bool {
         sides(cell, self.in_space).iter().all(|side| {
-            let normal = area_normal(self.points, side);
-            let from = x - crate::nearest::centre(self.points, side);
+            let normal = area_normal(points, side);
+            let from = x - crate::nearest::centre(points, side);
             normal.dot(&from) <= 0.0
         })
     }
 
-    /// Whether there are other cells beyond a facet: cells of unlike sizes meet there.
+    /// Whether there are other cells beyond a facet at rest: cells of unlike sizes meet there.
     fn is_within(&self, facet: usize) -> bool {
-        let list = &self.solid.boundary.facets[facet];
-        let Some(normal) = area_normal(self.points, list).try_normalize(0.0) else { return true };
-        let beyond = self.solid.boundary.centre(self.points, facet) + normal * (1e-3 * extent(self.points, list));
-        self.is_in(&beyond, None)
+        let (list, rest) = (&self.solid.boundary.facets[facet], &self.solid.rest[..]);
+        let Some(normal) = area_normal(rest, list).try_normalize(0.0) else { return true };
+        let beyond = self.solid.boundary.centre(rest, facet) + normal * (1e-3 * extent(rest, list));
+        let mut within = false;
+        self.at_rest.get_or_init(|| boxes(rest, &self.solid.cells)).nearest(&beyond, 0.0, |k| {
+            within = within || self.cell_holds(rest, &self.solid.cells[k], &beyond);
+            0.0
+        });
+        within
     }
 
     fn find(&self, x: &Point<3>, reach: f64, except: Option<(Point<3>, f64)>) -> Option<Found> {

@@ -381,6 +381,11 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
         if !plan.head.problem.contacts.contains_key(contact.name()) || sites.iter().any(|s| s.status != Status::Open) {
             continue;
         }
+        let [own, other] = contact.bodies();
+        // A body may be far from folding onto itself.
+        if own == other {
+            continue;
+        }
         if by_mortar && sites.iter().all(|s| s.gap.is_none()) {
             let message = format!(
                 "contact `{}`: no part of the slave faces the master; check the directions of the normals",

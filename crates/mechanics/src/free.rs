@@ -55,6 +55,20 @@ impl System {
         (0..self.bodies.len()).any(|body| self.is_unheld(body))
     }
 
+    /// How far bodies with a prescribed motion are displaced in the increment that has begun.
+    fn prescribed_travel(&self) -> f64 {
+        let Some([last, now]) = self.contacts.first().map(|contact| contact.law().times) else { return 0.0 };
+        let of = |body: &Box<dyn Body>| {
+            let [from, to] = [last, now].map(|time| {
+                let mut state = body.start();
+                body.prescribe(time, &mut state);
+                state.configuration
+            });
+            from.iter().zip(&to).take(3).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
+        };
+        self.bodies.iter().filter(|body| body.is_rigid()).map(of).fold(0.0, f64::max)
+    }
+
     /// Whether there is friction.
     pub(crate) fn has_friction(&self) -> bool {
         self.contacts.iter().any(|contact| contact.friction().is_some())
@@ -183,7 +197,7 @@ impl Problem<'_> {
         self.system.has_friction() && self.goes_by_itself(from, to) > far && self.system.has_unheld_body()
     }
 
-    /// How far something moved between two states, if no support moves about as far.
+    /// How far something moved between two states, if no support and no body with a prescribed motion moves about as far.
     fn goes_by_itself(&self, from: &SystemState, to: &SystemState) -> f64 {
         let moved = to.travel.iter().zip(&from.travel).zip(&self.is_spin).filter(|(_, turns)| !**turns);
         let farthest = moved.map(|((b, a), _)| (b - a).abs()).fold(0.0, f64::max);
@@ -192,7 +206,8 @@ impl Problem<'_> {
         let driven = self
             .system
             .held(&from.bodies, self.time)
-            .map_or(0.0, |(single, coupled)| single.iter().chain(&coupled).map(reach).fold(0.0, f64::max));
+            .map_or(0.0, |(single, coupled)| single.iter().chain(&coupled).map(reach).fold(0.0, f64::max))
+            .max(self.system.prescribed_travel());
         if driven < DRIVEN * farthest { farthest } else { 0.0 }
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use nalgebra::DMatrix;
-use signorini_fem::CellShape;
+use signorini_fem::{CellShape, Side};
 use signorini_solid::Volumetric;
 
 const LAWS: [StressLaw; 4] = [
@@ -105,8 +105,8 @@ fn of_solids_in_the_plane_and_about_an_axis() {
     let mut mesh = Mesh::<2>::new(corners.map(Point::<2>::from).to_vec());
     mesh.add_cell(CellShape::Triangle, 1, &[0, 1, 2]);
     mesh.add_cell(CellShape::Triangle, 1, &[0, 2, 3]);
-    mesh.group_mut("top").sides = vec![signorini_fem::Side { cell: 0, side: 1 }];
-    mesh.group_mut("right").sides = vec![signorini_fem::Side { cell: 0, side: 0 }];
+    mesh.group_mut("top").sides = vec![Side { cell: 0, side: 1 }];
+    mesh.group_mut("right").sides = vec![Side { cell: 0, side: 0 }];
     (1..=2).for_each(|degree| check(&mesh, degree, Space::PlaneStrain, 0.3));
 }
 
@@ -159,12 +159,22 @@ fn contact<const D: usize>(
     enforcement: Enforcement,
     mu: Option<f64>,
 ) -> f64 {
+    let bodies = vec![("upper", upper), ("lower", lower)];
+    of_parts(bodies, [(0, "bottom"), (1, "top")], degree, test.into(), (enforcement, mu))
+}
+
+fn of_parts<const D: usize>(
+    bodies: Vec<(&str, Mesh<D>)>,
+    parts: [(usize, &str); 2],
+    degree: usize,
+    test: Test,
+    (enforcement, mu): (Enforcement, Option<f64>),
+) -> f64 {
     let mut system = System::default();
-    for (name, mesh) in [("upper", upper), ("lower", lower)] {
+    for (name, mesh) in bodies {
         system.bodies.push(Box::new(solid(name, mesh, degree, ELASTIC, StressLaw::LinearElastic)));
     }
-    let test = test.into();
-    touch(&mut system, [(0, "bottom"), (1, "top")], test, enforcement, mu);
+    touch(&mut system, parts, test, enforcement, mu);
     system.prepare().unwrap();
     let count: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
     let start = system.start();
@@ -299,6 +309,34 @@ fn of_mortar_in_the_plane() {
                 println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
                 assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
             }
+        }
+    }
+}
+
+/// Two meshes as one, with the bottom of the first and the top of the second.
+fn joined<const D: usize>([a, b]: [Mesh<D>; 2]) -> Mesh<D> {
+    let mut out = Mesh::new(a.nodes().iter().chain(b.nodes()).copied().collect());
+    for (mesh, first) in [(&a, 0), (&b, a.nodes().len() as u32)] {
+        for cell in 0..mesh.cell_count() {
+            let nodes: Vec<u32> = mesh.cell_nodes(cell).iter().map(|n| n + first).collect();
+            out.add_cell(mesh.shape(cell), mesh.map(cell).order(), &nodes);
+        }
+    }
+    out.group_mut("bottom").sides.clone_from(&a.groups()["bottom"].sides);
+    let top = b.groups()["top"].sides.iter().map(|side| Side { cell: side.cell + a.cell_count() as u32, ..*side });
+    out.group_mut("top").sides = top.collect();
+    out
+}
+
+#[test]
+fn of_mortar_of_a_body_with_itself() {
+    for degree in 1..=2 {
+        for (enforcement, mu) in [(ENFORCEMENTS[2], None), (ENFORCEMENTS[1], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0))] {
+            let mesh = joined(shoe(degree));
+            let parts = [(0, "bottom"), (0, "top")];
+            let error = of_parts(vec![("body", mesh)], parts, degree, Test::Mortar(8), (enforcement, mu));
+            println!("degree {degree} {enforcement:?} {mu:?}: {error:e}");
+            assert!(error < 1e-6, "degree {degree} {enforcement:?} {mu:?}: {error:e}");
         }
     }
 }

@@ -8,7 +8,7 @@
 //! - the equation `(w/c) (Π(ζ) - λ) = 0`, for which `w` is an area (Alart & Curnier 1991).
 
 use crate::assembler::Assembler;
-use crate::enforcement::{Enforcement, Outer};
+use crate::enforcement::{Enforcement, Outer, SOFTER};
 use crate::outer::{OuterIteration, hardened, take_over, towards};
 use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
@@ -40,6 +40,8 @@ pub struct ContactLaw {
     is_new: bool,
     /// Times of the last state and of the one that is looked for.
     pub times: [f64; 2],
+    /// Whether trials are scaled down, as they led to the last states.
+    pub(crate) is_soft: bool,
     /// What is stated, while a start is looked for with something simpler.
     stated: Option<Stated>,
 }
@@ -110,6 +112,7 @@ impl ContactLaw {
             stiffness,
             areas,
             times: [0.0; 2],
+            is_soft: false,
             stated: None,
         }
     }
@@ -327,13 +330,30 @@ impl ContactLaw {
         }
     }
 
-    /// Scales the stiffness of trials, not that of penalties: whether there are trials to scale.
-    pub(crate) fn scale_trials(&mut self, factor: f64) -> bool {
+    /// What [`restore_scales`](ContactLaw::restore_scales) goes on from: scales of trials, the time, and whether trials are soft.
+    pub(crate) fn scales(&self) -> impl Iterator<Item = f64> {
+        self.stiffness.iter().copied().chain([self.times[0], f64::from(self.is_soft)])
+    }
+
+    /// Takes what [`scales`](ContactLaw::scales) gave, and leaves what follows it; none of something else.
+    pub(crate) fn restore_scales<'a>(&mut self, numbers: &'a [f64]) -> Option<&'a [f64]> {
+        let (stiffness, rest) = numbers.split_at_checked(self.stiffness.len())?;
+        let ([time, soft], rest) = rest.split_first_chunk()?;
+        self.stiffness.copy_from_slice(stiffness);
+        self.times = [*time; 2];
+        self.is_soft = *soft == 1.0;
+        Some(rest)
+    }
+
+    /// Makes trials soft or as stiff as they were, not those of penalties: whether that changed any.
+    pub(crate) fn make_trials(&mut self, soft: bool) -> bool {
         // Nitsche's method has its stiffness in the state, and a law that softens asks for one of its own.
         let softens = self.friction.as_ref().is_some_and(|law| law.least_scale() > 0.0);
-        if self.enforcement.takes_stress() || self.kept.is_empty() || softens {
+        if self.is_soft == soft || self.enforcement.takes_stress() || self.kept.is_empty() || softens {
             return false;
         }
+        let factor = if soft { SOFTER } else { 1.0 / SOFTER };
+        self.is_soft = soft;
         self.stiffness.iter_mut().for_each(|c| *c *= factor);
         self.softness *= factor;
         true

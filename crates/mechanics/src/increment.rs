@@ -4,7 +4,6 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::UnstableMaterial;
-use crate::enforcement::SOFTER;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -261,14 +260,20 @@ impl System {
             Err(error) if is_curable(&error) && !self.follows_its_path() => error,
             found => return found,
         };
-        // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across.
-        let found = self.with_scaled_trials(|system, is_softer| {
-            is_softer.then(|| system.by(Strategy::Straight, start, time, solved, report))
+        // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across; and so
+        // does a plate that bends by one as stiff as its cells.
+        let found = self.with_trials(&|is_soft| !is_soft, |system, changes| {
+            changes.then(|| system.by(Strategy::Straight, start, time, solved, report))
         });
         match found {
             None => {}
             Some(Err(error)) if is_curable(&error) => {}
-            Some(found) => return found,
+            Some(found) => {
+                // What exact multipliers find does not depend on their trials: those that led to a state go on.
+                let exact = self.contacts.iter_mut().map(|c| c.law_mut()).filter(|law| found.is_ok() && law.is_exact());
+                exact.for_each(|law| _ = law.make_trials(!law.is_soft));
+                return found;
+            }
         }
         // No other way leads where there is nothing to find.
         let (first, _) = self.numbering();
@@ -289,12 +294,20 @@ impl System {
         self.bodies.iter().any(|body| body.is_inelastic()) && !self.has_free_body()
     }
 
-    /// What is done while the trials of contacts that can be softer are; told whether there are any.
-    pub(crate) fn with_scaled_trials<T>(&mut self, of: impl FnOnce(&mut Self, bool) -> T) -> T {
-        let softer: Vec<bool> =
-            self.contacts.iter_mut().map(|contact| contact.law_mut().scale_trials(SOFTER)).collect();
-        let found = of(self, softer.contains(&true));
-        self.contacts.iter_mut().for_each(|contact| _ = contact.law_mut().scale_trials(1.0 / SOFTER));
+    /// What is done while the trials of contacts that can be are soft or not, by whether they were; told whether that changed
+    /// any.
+    pub(crate) fn with_trials<T>(
+        &mut self,
+        soft: &dyn Fn(bool) -> bool,
+        of: impl FnOnce(&mut Self, bool) -> T,
+    ) -> T {
+        let before: Vec<bool> = self.contacts.iter().map(|contact| contact.law().is_soft).collect();
+        let mut changes = false;
+        for (contact, before) in self.contacts.iter_mut().zip(&before) {
+            changes |= contact.law_mut().make_trials(soft(*before));
+        }
+        let found = of(self, changes);
+        self.contacts.iter_mut().zip(before).for_each(|(contact, before)| _ = contact.law_mut().make_trials(before));
         found
     }
 

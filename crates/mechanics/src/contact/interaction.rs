@@ -113,19 +113,18 @@ impl Interaction for Contact {
 
     fn history(&self) -> [Vec<f64>; 2] {
         let turned = self.turned.iter().flat_map(|t| t.iter().copied());
-        let scales = self.law.stiffness.iter().copied().chain([self.law.times[0]]).chain(turned).collect();
+        let scales = self.law.scales().chain(turned).collect();
         [self.law.kept.iter().zip(&self.law.history).zip(&self.memory).flat_map(numbers).collect(), scales]
     }
 
     fn restore(&mut self, [sites, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        let count = self.law.stiffness.len();
-        if sites.len() != NUMBERS * self.memory.len() || scales.len() != count + 7 {
-            return Err(NotItsHistory { contact: self.name.clone() });
+        let stranger = || NotItsHistory { contact: self.name.clone() };
+        if sites.len() != NUMBERS * self.memory.len() {
+            return Err(stranger());
         }
+        let Some(&[a, b, c, d, e, f]) = self.law.restore_scales(scales) else { return Err(stranger()) };
         ((self.law.kept, self.law.history), self.memory) = sites.chunks(NUMBERS).map(memory).unzip();
-        self.law.stiffness.copy_from_slice(&scales[..count]);
-        self.law.times = [scales[count]; 2];
-        self.turned = [1, 4].map(|k| Vector::<3>::from_column_slice(&scales[count + k..count + k + 3]));
+        self.turned = [Vector::<3>::new(a, b, c), Vector::<3>::new(d, e, f)];
         Ok(())
     }
 }

@@ -45,6 +45,10 @@ struct Found<'a> {
 /// Faces whose terms are held at a time, made side by side.
 const AT_ONCE: usize = 256;
 
+/// Zones of contact are several cells wide: trials of exact multipliers are as stiff as against waves of eight cells, which
+/// takes a fifth less iterations than those of one cell where surfaces slide or bend.
+const OF_ZONE: f64 = 0.125;
+
 /// Gap beyond the least one, relative to the size of the body, of what touches at the same time.
 const NEAREST: f64 = 1e-9;
 
@@ -221,7 +225,8 @@ impl Interaction for Mortar {
     }
 
     fn prepare(&mut self, _: &[Box<dyn Body>], _: f64) {
-        self.law.stiffness.iter_mut().for_each(|c| *c *= WAVE);
+        let scale = if self.law.is_exact() { OF_ZONE * WAVE } else { WAVE };
+        self.law.stiffness.iter_mut().for_each(|c| *c *= scale);
     }
 
     fn add_to(

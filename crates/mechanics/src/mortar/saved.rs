@@ -36,13 +36,8 @@ impl Mortar {
         let roles: Vec<f64> = roles.map(|is_slave| f64::from(*is_slave)).collect();
         let scales = self
             .law
-            .stiffness
-            .iter()
-            .chain(&[self.law.times[0]])
-            .chain(self.turned.iter())
-            .chain(&roles)
-            .chain(&since)
-            .copied()
+            .scales()
+            .chain(self.turned.iter().chain(&roles).chain(&since).copied())
             .collect();
         [own, scales]
     }
@@ -50,7 +45,7 @@ impl Mortar {
     /// Takes numbers that [`Mortar::numbers`] gave; none of something else.
     pub(super) fn take_numbers(&mut self, [own, scales]: &[Vec<f64>; 2]) -> Option<()> {
         let count = self.memory.len();
-        if scales.len() < count + 4 || own.len() < NUMBERS * count {
+        if own.len() < NUMBERS * count {
             return None;
         }
         let (nodes, mut rest) = own.split_at(NUMBERS * count);
@@ -72,10 +67,8 @@ impl Mortar {
         };
         ((self.law.kept, self.law.history), self.memory) = nodes.chunks(NUMBERS).map(of).unzip();
         self.matched = matched;
-        self.law.stiffness.copy_from_slice(&scales[..count]);
-        self.law.times = [scales[count]; 2];
-        self.turned = Vector::<3>::from_column_slice(&scales[count + 1..count + 4]);
-        let mut rest = &scales[count + 4..];
+        let (turned, mut rest) = self.law.restore_scales(scales)?.split_first_chunk::<3>()?;
+        self.turned = Vector::<3>::from_column_slice(turned);
         if let Some(roles) = self.search.facing.within.as_mut().and_then(|within| within.is_slave.as_mut()) {
             let (known, tail) = rest.split_at_checked(roles.len())?;
             roles.iter_mut().zip(known).for_each(|(role, known)| *role = *known == 1.0);

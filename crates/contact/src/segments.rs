@@ -210,9 +210,7 @@ fn candidates<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Polyline;
-
-    const ANY: Sight<'_> = Sight { reach: 1.0, deepest: &|_| f64::INFINITY, sees: &|_, _| true };
+    use crate::testing::{ANY, Polyline};
 
     /// A slave from 0 to 2 at height 0.1 + 0.05 x over a master from 0.25 to 3 with other faces.
     fn sides() -> (Polyline, Polyline) {

@@ -1,9 +1,13 @@
 //! A polyline as a surface of the plane, for unit tests.
 
 use crate::face_point::FacePoint;
+use crate::segments::Sight;
 use crate::surface::{ContactSurface, ShapeFunction};
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
+
+/// All faces see each other up to a gap of one.
+pub(crate) const ANY: Sight<'_> = Sight { reach: 1.0, deepest: &|_| f64::INFINITY, sees: &|_, _| true };
 
 /// Straight faces from point to point, linear functions; outward is to the right of the way.
 pub(crate) struct Polyline(pub Vec<Point<2>>);

@@ -40,6 +40,8 @@ pub struct ContactLaw {
     is_new: bool,
     /// Times of the last state and of the one that is looked for.
     pub times: [f64; 2],
+    /// The scale of trials relative to the stiffness of cells.
+    pub(crate) scale: f64,
     /// Whether trials are scaled down, as they led to the last states.
     pub(crate) is_soft: bool,
     /// What is stated, while a start is looked for with something simpler.
@@ -93,7 +95,7 @@ const AT_LIMIT: f64 = 1e-7;
 const BONDED: f64 = 0.02;
 
 /// The part of its scale by which a multiplier resists change within a Newton step, in the tangent alone: what several
-/// points of a stiff body carry together need not be unique.
+/// points of a stiff body carry together need not be unique. Of softer trials it is a smaller part, so that it resists as much.
 const UNDETERMINED: f64 = 1e-6;
 
 impl ContactLaw {
@@ -112,6 +114,7 @@ impl ContactLaw {
             stiffness,
             areas,
             times: [0.0; 2],
+            scale: 1.0,
             is_soft: false,
             stated: None,
         }
@@ -278,7 +281,8 @@ impl ContactLaw {
     ) {
         let scale = self.areas[k] / self.stiffness[k];
         // Tractions that nothing determines stay where they are.
-        let resists = if projected.is_some() { 1.0 + UNDETERMINED } else { 1.0 };
+        let softened = self.scale * if self.is_soft { SOFTER } else { 1.0 };
+        let resists = if projected.is_some() { 1.0 + UNDETERMINED * softened } else { 1.0 };
         let projected = projected.copied().unwrap_or_default();
         for (i, &slot) in (0u32..).zip(self.slots()) {
             let traction = projected.traction[slot];

@@ -225,7 +225,8 @@ impl Interaction for Mortar {
     }
 
     fn prepare(&mut self, _: &[Box<dyn Body>], _: f64) {
-        let scale = if self.law.is_exact() { OF_ZONE * WAVE } else { WAVE };
+        self.law.scale = if self.law.is_exact() { OF_ZONE } else { 1.0 };
+        let scale = WAVE * self.law.scale;
         self.law.stiffness.iter_mut().for_each(|c| *c *= scale);
     }
 

@@ -105,6 +105,8 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
     off += uncertain;
     let kept: f64 = [before, now].iter().flat_map(|s| &s.contacts).map(|list| elastic(list)).sum();
     let size = size + stored.abs() + dissipated.abs();
+    // What moves as a whole may take the work of forces that are rounding.
+    off += setting.bodies.iter().map(|b| b.rounding * b.form.size()).sum::<f64>();
     let limit = off + kept + LEFT * size + STORED * now.stored?.abs() + ROUNDING * forces(setting, now);
     let missing = work - stored - dissipated;
     // What is prescribed from the start moves at once too.

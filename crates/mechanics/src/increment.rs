@@ -296,11 +296,7 @@ impl System {
 
     /// What is done while the trials of contacts that can be are soft or not, by whether they were; told whether that changed
     /// any.
-    pub(crate) fn with_trials<T>(
-        &mut self,
-        soft: &dyn Fn(bool) -> bool,
-        of: impl FnOnce(&mut Self, bool) -> T,
-    ) -> T {
+    pub(crate) fn with_trials<T>(&mut self, soft: &dyn Fn(bool) -> bool, of: impl FnOnce(&mut Self, bool) -> T) -> T {
         let before: Vec<bool> = self.contacts.iter().map(|contact| contact.law().is_soft).collect();
         let mut changes = false;
         for (contact, before) in self.contacts.iter_mut().zip(&before) {

@@ -34,11 +34,7 @@ impl Mortar {
         let since: Vec<f64> = since.flat_map(|u| std::iter::once(u.len() as f64).chain(u.iter().copied())).collect();
         let roles = self.search.facing.within.iter().flat_map(|within| within.is_slave.iter().flatten());
         let roles: Vec<f64> = roles.map(|is_slave| f64::from(*is_slave)).collect();
-        let scales = self
-            .law
-            .scales()
-            .chain(self.turned.iter().chain(&roles).chain(&since).copied())
-            .collect();
+        let scales = self.law.scales().chain(self.turned.iter().chain(&roles).chain(&since).copied()).collect();
         [own, scales]
     }
 

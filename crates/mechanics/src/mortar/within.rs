@@ -132,7 +132,8 @@ impl Sides {
     fn join(&mut self, a: usize, b: usize, opposite: bool) {
         let ((root_a, of_a), (root_b, of_b)) = (self.root(a), self.root(b));
         if root_a != root_b {
-            let (small, large) = if self.size[root_a] < self.size[root_b] { (root_a, root_b) } else { (root_b, root_a) };
+            let (small, large) =
+                if self.size[root_a] < self.size[root_b] { (root_a, root_b) } else { (root_b, root_a) };
             self.parent[small] = large;
             self.is_opposite[small] = of_a ^ of_b ^ opposite;
             self.size[large] += self.size[small];

@@ -200,9 +200,9 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// From the smallest to the largest value; singular corners do not take the whole scale for themselves.
+    /// From the smallest to the largest value that is defined; singular corners do not take the whole scale for themselves.
     pub fn of(values: &[f64]) -> Self {
-        let mut sorted = values.to_vec();
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let (Some(&smallest), Some(&largest)) = (sorted.first(), sorted.last()) else {
             return Scale { low: 0.0, high: 0.0, ends: [0.0; 2] };
@@ -264,7 +264,9 @@ impl Scale {
         if self.is_empty() {
             return AT_REST;
         }
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        let place = (value - self.low) / (self.high - self.low);
+        // What is not defined is where it grew beyond all bounds.
+        if place.is_finite() { place.clamp(0.0, 1.0) } else { 1.0 }
     }
 }
 

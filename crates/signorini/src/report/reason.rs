@@ -105,6 +105,8 @@ pub enum WarningKind {
     LargeStrain,
     /// A hyperelastic material softens at its stretches: it is not stable there.
     UnstableMaterial,
+    /// A cell is inverted at a point of its boundary: its stress is not defined there.
+    InvertedCell,
     /// The sides of a contact do not face each other.
     NotFacing,
     /// The equilibrium or the contact forces may not be unique.

@@ -4,6 +4,7 @@ mod accuracy;
 mod frame;
 pub(crate) mod recovered;
 mod report;
+mod warnings;
 
 use super::audit::system::SystemAudit;
 use super::checkpoint;
@@ -318,7 +319,7 @@ impl Model for MechanicsModel {
             accuracy::estimate(self, (result.unknowns, result.solved), &record.steps, &mut step, progress);
         }
         record.steps.push(step);
-        report::warn(&self.plan, [&self.result, &result], &shown, record);
+        warnings::warn(&self.plan, [&self.result, &result], &shown, record);
         if self.plan.head.pictures && self.plan.times.len() > 1 {
             self.film.add(&Frame { time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() });
         }

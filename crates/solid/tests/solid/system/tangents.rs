@@ -331,7 +331,8 @@ fn joined<const D: usize>([a, b]: [Mesh<D>; 2]) -> Mesh<D> {
 #[test]
 fn of_mortar_of_a_body_with_itself() {
     for degree in 1..=2 {
-        for (enforcement, mu) in [(ENFORCEMENTS[2], None), (ENFORCEMENTS[1], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0))] {
+        for (enforcement, mu) in [(ENFORCEMENTS[2], None), (ENFORCEMENTS[1], Some(2e-3)), (ENFORCEMENTS[2], Some(30.0))]
+        {
             let mesh = joined(shoe(degree));
             let parts = [(0, "bottom"), (0, "top")];
             let error = of_parts(vec![("body", mesh)], parts, degree, Test::Mortar(8), (enforcement, mu));

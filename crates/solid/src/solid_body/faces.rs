@@ -3,7 +3,7 @@
 use super::spatial::{depth, spatial};
 use crate::body::{Bodies, BodySurface};
 use rayon::prelude::*;
-use signorini_contact::{FacePoint, PressureNodes};
+use signorini_contact::{FacePoint, PressureNodes, SplineFace};
 use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
@@ -25,6 +25,8 @@ pub(super) struct Face<const D: usize> {
     /// Degree of the polynomial that the side is when displaced, positions of as many points, and the functions there.
     pub order: usize,
     lattice: Vec<(Point<D>, Vec<f64>)>,
+    /// The side as a span of a spline, where it is one.
+    pub spline: Option<SplineFace<D>>,
     pub depth: f64,
 }
 
@@ -311,8 +313,11 @@ impl<const D: usize> Faces<D> {
         let mut points: Vec<(usize, Vec<(u32, Local)>)> = vec![(0, Vec::new()); nodes.len()];
         for (place, &face) in surface.faces.iter().enumerate() {
             let own = nodes.of_face(place);
-            for ((node, _), s) in own.iter().zip(nodes.map(place).nodes()) {
+            for (k, ((node, _), s)) in own.iter().zip(nodes.map(place).nodes()).enumerate() {
                 let (first, at) = &mut points[*node as usize];
+                if !nodes.lies_on(place, k) && nodes.places()[*node as usize].0 != place {
+                    continue;
+                }
                 if at.is_empty() {
                     *first = place;
                 }
@@ -482,7 +487,8 @@ impl<const D: usize> Face<D> {
             })
             .collect();
         let vertices = body.mesh.side_vertices(side);
-        Face { side, shape, vertices, places, functions, order, lattice, depth: depth(bodies, side) }
+        let spline = body.spline_face(side);
+        Face { spline, side, shape, vertices, places, functions, order, lattice, depth: depth(bodies, side) }
     }
 }
 

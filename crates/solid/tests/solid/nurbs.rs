@@ -86,7 +86,8 @@ fn unlike_splines_pass_the_patch_test() {
     for (degree, law) in [(2, StressLaw::LinearElastic), (2, NEO_HOOKE), (3, NEO_HOOKE), (4, StressLaw::LinearElastic)] {
         let lower = brick::<2>(([0.0, 0.0], [1.0, 0.5]), degree, [3, 2], (0.2, 0.0));
         let upper = brick::<2>(([0.0, 0.5], [1.0, 1.0]), degree, [5, 1], (0.2, 0.0));
-        let error = patch([lower, upper], degree, &law, 0);
+        // The functions of one side are no polynomials in the coordinates of the other.
+        let error = patch([lower, upper], degree, &law, 6);
         println!("degree {degree} {}: {error:.1e}", law.name());
         assert!(error < 1e-10, "degree {degree} {}: {error:e}", law.name());
     }
@@ -129,10 +130,10 @@ fn lame(degree: usize, cells: usize) -> [f64; 2] {
 #[test]
 fn a_tube_converges_with_the_order_of_its_functions() {
     for degree in [2, 3] {
-        let found: Vec<[f64; 2]> = [2, 4, 8].map(|cells| lame(degree, cells)).to_vec();
+        let found: Vec<[f64; 2]> = [4, 8, 16].map(|cells| lame(degree, cells)).to_vec();
         let order = |k: usize, i: usize| (found[i][k] / found[i + 1][k]).log2();
         println!("degree {degree}: {found:?}, orders {:.2} {:.2}", order(0, 1), order(1, 1));
-        assert!(order(0, 1) > degree as f64 + 0.7, "{found:?}");
+        assert!(order(0, 1) > degree as f64 + 0.5, "{found:?}");
         assert!(order(1, 1) > 2.0 * degree as f64 - 0.3, "{found:?}");
     }
 }

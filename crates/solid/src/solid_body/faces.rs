@@ -59,6 +59,8 @@ pub(super) struct Surface<const D: usize> {
     pub around: HashMap<u32, Vec<u32>>,
     /// What the averaged normal at each vertex of each face is the sum of, once it is asked for.
     normals: OnceLock<Vec<Vec<Normal<D>>>>,
+    /// Whether its normal does not jump, as that of smooth splines, once it is asked for.
+    is_smooth: OnceLock<bool>,
     nodes: Tested<D>,
     gauss_points: Tested<D>,
 }
@@ -85,6 +87,9 @@ pub(super) struct Faces<const D: usize> {
 /// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
 /// regular octagon.
 pub(super) const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Difference of unit normals that is none.
+const SAME: f64 = 1e-9;
 
 /// Functions smaller than this at a point do not move it: rounding of their values, which are about one.
 pub(super) const NOTHING: f64 = 1e-14;
@@ -117,7 +122,7 @@ impl<const D: usize> Faces<D> {
             };
             let (nodes, gauss_points) = (tested(nodes), tested(gauss_points));
             out.by_group.insert(name.clone(), out.surfaces.len());
-            out.surfaces.push(Surface { faces, boundary, around, normals: OnceLock::new(), nodes, gauss_points });
+            out.surfaces.push(Surface { faces, boundary, around, normals: OnceLock::new(), is_smooth: OnceLock::new(), nodes, gauss_points });
         }
         out
     }
@@ -209,6 +214,26 @@ impl<const D: usize> Faces<D> {
                 vertices.map(|k| self.averaged_at_vertex(*face, k, &surface.around)).collect()
             };
             surface.faces.par_iter().map(of).collect()
+        })
+    }
+
+    /// Whether a surface of splines has the same normal on all faces that meet: at rest, and then wherever it goes.
+    pub fn is_smooth(&self, surface: &Surface<D>) -> bool {
+        let normal = |f: u32, k: usize| {
+            let shape = self.face(f).shape;
+            self.reference(f, &shape.vertices()[k]).area_normal().normalize()
+        };
+        let agrees = |v: &u32, faces: &Vec<u32>| {
+            let normals = faces.iter().filter_map(|&f| {
+                let place = self.face(f).vertices.iter().position(|w| w == v)?;
+                Some(normal(f, place))
+            });
+            let list: Vec<Point<D>> = normals.collect();
+            list.iter().all(|n| (n - list[0]).norm() < SAME)
+        };
+        *surface.is_smooth.get_or_init(|| {
+            surface.faces.iter().all(|f| self.face(*f).spline.is_some())
+                && surface.around.iter().all(|(v, faces)| agrees(v, faces))
         })
     }
 

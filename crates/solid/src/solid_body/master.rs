@@ -287,7 +287,7 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
     }
 
     fn is_faceted(&self) -> bool {
-        true
+        !self.faces.is_smooth(self.surface)
     }
 
     fn cut(&self, x: &Point<3>, direction: &Vector<3>, reach: f64) -> Option<MasterProjection> {

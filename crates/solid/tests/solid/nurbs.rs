@@ -1,6 +1,6 @@
 //! Solids of spline patches: patch test, exact tubes, shrink fit, turning masters.
 
-use super::system::{force, hold, load, part, run, solid};
+use super::system::{force, hold, load, part, rigid, run, solid};
 use signorini_fem::nurbs::{NurbsPatch, mesh_of_patches};
 use signorini_fem::Mesh;
 use signorini_geometry::rigid_shape::Cylinder;
@@ -169,7 +169,7 @@ fn a_tube_shrinks_on_a_shaft() {
         let mut system = System::default();
         system.bodies.push(Box::new(solid("tube", mesh, 4, elastic, NEO_HOOKE)));
         let zero = Vector::<3>::zeros();
-        system.bodies.push(Box::new(super::system::rigid(Cylinder { point: zero, axis: Vector::<3>::z(), radius: 1.25 }, move |_| zero)));
+        system.bodies.push(Box::new(rigid(Cylinder { point: zero, axis: Vector::<3>::z(), radius: 1.25 }, move |_| zero)));
         system.supports.push(hold(0, "left", [Some(0.0), None, None]));
         system.supports.push(hold(0, "right", [None, Some(0.0), None]));
         let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
@@ -185,4 +185,49 @@ fn a_tube_shrinks_on_a_shaft() {
         assert!((radius - outer).abs() < 1e-6, "{radius} {outer}");
         assert!((force(&results[0], 0).x / 1.25 - pressure).abs() < 1e-6, "{} {pressure}", force(&results[0], 0));
     }
+}
+
+/// A turning wheel from 0.5 to 1 under a block that is held at a height: the forces on the block, angle by angle, over as much as
+/// a cell of the wheel takes.
+fn turned(wheel: Mesh<2>, degree: usize, [bore, rim]: [&str; 2], method: Sampling) -> Vec<f64> {
+    let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+    let mut system = System::default();
+    let block = brick::<2>(([-0.5, 0.98], [0.5, 1.48]), 2, [12, 2], (0.0, 0.0));
+    system.bodies.push(Box::new(solid("wheel", wheel, degree, elastic, NEO_HOOKE)));
+    system.bodies.push(Box::new(solid("block", block, 2, elastic, NEO_HOOKE)));
+    system.supports.push(hold(1, "top", [Some(0.0), Some(0.0), None]));
+    let turning = |i: usize| -> signorini_mechanics::system::TimeField {
+        Arc::new(move |x: &Point<3>, t: f64| {
+            let (s, c) = (t - 1.0).max(0.0).sin_cos();
+            [c * x.x - s * x.y, s * x.x + c * x.y][i] - x[i]
+        })
+    };
+    let mut held = hold(0, bore, [None; 3]);
+    (0..2).for_each(|i| held.displacement[i] = Some(turning(i)));
+    system.supports.push(held);
+    let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
+    let contact =
+        Contact::new("touch", of(1, "bottom"), of(0, rim), method, Enforcement::AugmentedLagrangian).unwrap();
+    system.contacts.push(Box::new(contact));
+    // A cell of the wheel takes an eighth of pi.
+    let times: Vec<f64> = (0..=8).map(|k| 1.0 + k as f64 * std::f64::consts::FRAC_PI_8 / 8.0).collect();
+    run(&mut system, &times).1.iter().map(|r| force(r, 0).y).collect()
+}
+
+#[test]
+fn a_spline_is_a_smooth_master() {
+    let ripple = |forces: &[f64]| {
+        let (low, high) = forces.iter().fold((f64::MAX, f64::MIN), |(l, h), f| (l.min(*f), h.max(*f)));
+        (high - low) / (0.5 * (high + low))
+    };
+    let quarters: Vec<_> = (0..4).map(|k| quarter([0.5, 1.0], k).raised(2, [4, 2]).unwrap()).collect();
+    let splines = turned(mesh_of_patches(&quarters).unwrap(), 2, ["bottom", "top"], Sampling::GaussPoints);
+    let turn = std::f64::consts::TAU;
+    let even = |from: f64, to: f64, n: usize| (0..=n).map(|k| from + (to - from) * k as f64 / n as f64).collect();
+    let facets = signorini_fem::block::block::<2>(&[even(0.5, 1.0, 2), even(0.0, turn, 16)], 1, |x| {
+        Point::<2>::new(x[0] * x[1].cos(), x[0] * x[1].sin())
+    });
+    let facets = turned(facets, 2, ["left", "right"], Sampling::GaussPoints);
+    println!("ripple of splines {:.2e}, of facets {:.2e}: {splines:?} {facets:?}", ripple(&splines), ripple(&facets));
+    assert!(ripple(&splines) < 0.05 * ripple(&facets), "{splines:?} {facets:?}");
 }

@@ -24,10 +24,7 @@ pub struct FaceMaps<const D: usize> {
 
 impl<const D: usize> FaceMaps<D> {
     /// Faces of the given forms, with the places of points on those that are polynomials.
-    pub fn new<'a>(
-        forms: impl Iterator<Item = FaceForm<'a, D>>,
-        at: impl Fn(usize, &Local) -> Point<D>,
-    ) -> Self {
+    pub fn new<'a>(forms: impl Iterator<Item = FaceForm<'a, D>>, at: impl Fn(usize, &Local) -> Point<D>) -> Self {
         let mut maps: Vec<CellMap> = Vec::new();
         let mut faces = Vec::new();
         for (face, form) in forms.enumerate() {

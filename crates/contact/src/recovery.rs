@@ -46,7 +46,9 @@ struct Even {
 fn even<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>) -> Vec<Even> {
     let mut out = Vec::new();
     let mut at = Values::default();
-    for face in (0..nodes.face_count()).filter(|&f| D == 2 && nodes.map(f).order() > 1 && nodes.map(f).rational().is_none()) {
+    for face in
+        (0..nodes.face_count()).filter(|&f| D == 2 && nodes.map(f).order() > 1 && nodes.map(f).rational().is_none())
+    {
         let list = nodes.of_face(face);
         let radii: Vec<f64> = list.iter().map(|(k, _)| slave.measure(&nodes.positions[*k as usize])).collect();
         let most = radii.iter().fold(0.0f64, |m, r| m.max(*r));

@@ -1,8 +1,8 @@
 //! Unstructured meshes: cells of all shapes, straight or curved, with named groups of cells, sides and vertices.
 
 use super::cell_map::CellMap;
-use super::rational::RationalBasis;
 use super::hierarchic::Values;
+use super::rational::RationalBasis;
 use super::reference::{CellShape, Local};
 use signorini_geometry::{Matrix, Point};
 use std::collections::{BTreeMap, HashMap};

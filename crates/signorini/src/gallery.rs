@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 49] = [
+pub const GALLERY: [Example; 50] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -44,6 +44,7 @@ pub const GALLERY: [Example; 49] = [
     example!("press_fit", "a shaft pressed into a hub and turned until it slips"),
     example!("peel", "two glued strips are peeled apart, compared with the energy of the glue"),
     example!("jkr", "a ball is pulled off an adhesive block, compared with Johnson, Kendall and Roberts"),
+    example!("tubes", "two tubes of NURBS pressed crosswise on each other, at finite strain"),
     example!("groove", "a free ball between two elastic blocks, held by contact and friction only"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),
     example!("edge", "a rope over the rounded edge of an elastic block"),

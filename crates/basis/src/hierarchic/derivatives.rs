@@ -9,7 +9,8 @@ use crate::reference::Local;
 pub type Derivatives = [f64; 10];
 
 /// How often each of [`Derivatives`] is taken along `a` and `b`.
-pub(crate) const TIMES: [[usize; 2]; 10] = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
+pub(crate) const TIMES: [[usize; 2]; 10] =
+    [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
 const BINOMIAL: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
 

@@ -40,7 +40,9 @@ impl Turn {
         let swaps: &[bool] = if D == 3 { &[false, true] } else { &[false] };
         let reversals: &[[bool; 2]] =
             if D == 3 { &[[false; 2], [true, false], [false, true], [true; 2]] } else { &[[false; 2], [true, false]] };
-        let of = |swapped: &bool| reversals.iter().map(|reversed| Turn { swapped: *swapped, reversed: *reversed }).collect::<Vec<_>>();
+        let of = |swapped: &bool| {
+            reversals.iter().map(|reversed| Turn { swapped: *swapped, reversed: *reversed }).collect::<Vec<_>>()
+        };
         swaps.iter().flat_map(of).collect()
     }
 
@@ -88,7 +90,13 @@ impl PatchSide {
     fn middle<const D: usize>(&self, patch: &NurbsPatch<D>) -> Point<D> {
         patch.at(&std::array::from_fn(|k| {
             let [from, to] = patch.lines[k].range();
-            if k != self.across { 0.5 * (from + to) } else if self.upper { to } else { from }
+            if k != self.across {
+                0.5 * (from + to)
+            } else if self.upper {
+                to
+            } else {
+                from
+            }
         }))
     }
 
@@ -124,8 +132,10 @@ impl JoinedSides {
 pub fn joined_sides<const D: usize>(patches: &[NurbsPatch<D>]) -> Result<Vec<JoinedSides>, NurbsError> {
     let all: Vec<PatchSide> = (0..patches.len()).flat_map(PatchSide::all::<D>).collect();
     let points = patches.iter().flat_map(|p| &p.points);
-    let (low, high) =
-        points.fold((Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY)), |(l, h), x| (l.inf(x), h.sup(x)));
+    let (low, high) = points
+        .fold((Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY)), |(l, h), x| {
+            (l.inf(x), h.sup(x))
+        });
     let near = SAME * (high - low).norm();
     let mut out: Vec<JoinedSides> = Vec::new();
     for (k, a) in all.iter().enumerate() {

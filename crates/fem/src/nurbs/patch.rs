@@ -191,7 +191,10 @@ fn check_knots(direction: &str, degree: usize, knots: &[f64]) -> Result<(), Nurb
         if repeats(end) != degree + 1 {
             return wrong(
                 format!("the {direction} direction begins or ends with {} times {end}", repeats(end)),
-                format!("repeat the first and the last knot {} times: degree + 1, so that the patch reaches its sides", degree + 1),
+                format!(
+                    "repeat the first and the last knot {} times: degree + 1, so that the patch reaches its sides",
+                    degree + 1
+                ),
             );
         }
     }

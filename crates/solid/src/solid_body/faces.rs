@@ -122,7 +122,15 @@ impl<const D: usize> Faces<D> {
             };
             let (nodes, gauss_points) = (tested(nodes), tested(gauss_points));
             out.by_group.insert(name.clone(), out.surfaces.len());
-            out.surfaces.push(Surface { faces, boundary, around, normals: OnceLock::new(), is_smooth: OnceLock::new(), nodes, gauss_points });
+            out.surfaces.push(Surface {
+                faces,
+                boundary,
+                around,
+                normals: OnceLock::new(),
+                is_smooth: OnceLock::new(),
+                nodes,
+                gauss_points,
+            });
         }
         out
     }

@@ -401,6 +401,7 @@ fn span(basis: &RationalBasis, points: &[Point<3>]) -> Result<Shape, ShapeError>
     let row = |i: usize| (0..=p).map(move |j| i + j * (p + 1));
     let grid: Vec<Vec<Point<3>>> = (0..=p).map(|i| row(i).map(|k| points[k]).collect()).collect();
     let weights: Vec<Vec<f64>> = (0..=p).map(|i| row(i).map(|k| weights[k]).collect()).collect();
-    let surface = signorini_geometry::shape::Surface::nurbs([p; 2], [&knots, &knots], &grid, Some(&weights), [false; 2])?;
+    let surface =
+        signorini_geometry::shape::Surface::nurbs([p; 2], [&knots, &knots], &grid, Some(&weights), [false; 2])?;
     Ok(surface.into())
 }

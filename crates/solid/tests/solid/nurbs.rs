@@ -1,8 +1,8 @@
 //! Solids of spline patches: patch test, exact tubes, shrink fit, turning masters.
 
 use super::system::{force, hold, load, part, rigid, run, solid};
-use signorini_fem::nurbs::{NurbsPatch, mesh_of_patches};
 use signorini_fem::Mesh;
+use signorini_fem::nurbs::{NurbsPatch, mesh_of_patches};
 use signorini_geometry::rigid_shape::Cylinder;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::*;
@@ -28,7 +28,8 @@ fn brick<const D: usize>(
     cells: [usize; D],
     (shift, vary): (f64, f64),
 ) -> Mesh<D> {
-    let corners = (0..1 << D).map(|c| Point::<D>::from_fn(|k, _| if c >> k & 1 == 1 { high[k] } else { low[k] })).collect();
+    let corners =
+        (0..1 << D).map(|c| Point::<D>::from_fn(|k, _| if c >> k & 1 == 1 { high[k] } else { low[k] })).collect();
     let lines = std::array::from_fn(|_| vec![0.0, 0.0, 1.0, 1.0]);
     let mut patch = NurbsPatch::new("", [1; D], lines, corners, None).unwrap().raised(degree, cells).unwrap();
     let counts = patch.counts();
@@ -63,8 +64,7 @@ fn patch<const D: usize>([lower, upper]: [Mesh<D>; 2], degree: usize, law: &Stre
     system.supports.push(hold(0, "bottom", std::array::from_fn(|k| (k == up).then_some(0.0))));
     system.supports.push(hold(1, "top", std::array::from_fn(|k| (k == up).then_some(-0.1))));
     let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
-    let mut contact =
-        Mortar::new("touch", of(1, "bottom"), of(0, "top"), Enforcement::Multiplier).unwrap();
+    let mut contact = Mortar::new("touch", of(1, "bottom"), of(0, "top"), Enforcement::Multiplier).unwrap();
     contact.refine(extra);
     system.contacts.push(Box::new(contact));
     let (state, _) = run(&mut system, &[1.0]);
@@ -83,7 +83,8 @@ fn patch<const D: usize>([lower, upper]: [Mesh<D>; 2], degree: usize, law: &Stre
 
 #[test]
 fn unlike_splines_pass_the_patch_test() {
-    for (degree, law) in [(2, StressLaw::LinearElastic), (2, NEO_HOOKE), (3, NEO_HOOKE), (4, StressLaw::LinearElastic)] {
+    for (degree, law) in [(2, StressLaw::LinearElastic), (2, NEO_HOOKE), (3, NEO_HOOKE), (4, StressLaw::LinearElastic)]
+    {
         let lower = brick::<2>(([0.0, 0.0], [1.0, 0.5]), degree, [3, 2], (0.2, 0.0));
         let upper = brick::<2>(([0.0, 0.5], [1.0, 1.0]), degree, [5, 1], (0.2, 0.0));
         // The functions of one side are no polynomials in the coordinates of the other.
@@ -140,8 +141,7 @@ fn a_tube_converges_with_the_order_of_its_functions() {
 
 /// A tube from 1 to 2 pushed on a rigid shaft of radius 1.25: pressure on the shaft and outer radius, by an ordinary differential
 /// equation of the radius.
-const SHRUNK: [(f64, f64, f64); 2] =
-    [(0.3, 0.2543533657929, 2.165640156287), (0.49, 0.2745640721773, 2.137596280523)];
+const SHRUNK: [(f64, f64, f64); 2] = [(0.3, 0.2543533657929, 2.165640156287), (0.49, 0.2745640721773, 2.137596280523)];
 
 #[test]
 fn a_tube_shrinks_on_a_shaft() {
@@ -169,7 +169,9 @@ fn a_tube_shrinks_on_a_shaft() {
         let mut system = System::default();
         system.bodies.push(Box::new(solid("tube", mesh, 4, elastic, NEO_HOOKE)));
         let zero = Vector::<3>::zeros();
-        system.bodies.push(Box::new(rigid(Cylinder { point: zero, axis: Vector::<3>::z(), radius: 1.25 }, move |_| zero)));
+        system
+            .bodies
+            .push(Box::new(rigid(Cylinder { point: zero, axis: Vector::<3>::z(), radius: 1.25 }, move |_| zero)));
         system.supports.push(hold(0, "left", [Some(0.0), None, None]));
         system.supports.push(hold(0, "right", [None, Some(0.0), None]));
         let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
@@ -181,19 +183,25 @@ fn a_tube_shrinks_on_a_shaft() {
         let fields = system.bodies[0].fields(&state.bodies[0]);
         let ends = fields.points.iter().zip(&fields.displacement).filter(|(x, _)| x.norm() > 2.0 - 1e-9);
         let radius = ends.map(|(x, u)| (x + u).norm()).fold(0.0f64, f64::max);
-        println!("contact: outer radius {radius:.12}, pressure {pressures:?} x 1/1.25 {}, {}", pressures.1 / 1.25, force(&results[0], 0));
+        println!(
+            "contact: outer radius {radius:.12}, pressure {pressures:?} x 1/1.25 {}, {}",
+            pressures.1 / 1.25,
+            force(&results[0], 0)
+        );
         assert!((radius - outer).abs() < 1e-6, "{radius} {outer}");
         assert!((force(&results[0], 0).x / 1.25 - pressure).abs() < 1e-6, "{} {pressure}", force(&results[0], 0));
     }
 }
 
 /// A turning wheel from 0.5 to 1 under a block that is held at a height: the forces on the block, angle by angle, over as much as
-/// a cell of the wheel takes.
+/// a facet takes.
 fn turned(wheel: Mesh<2>, degree: usize, [bore, rim]: [&str; 2], method: Sampling) -> Vec<f64> {
     let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
     let mut system = System::default();
-    let block = brick::<2>(([-0.5, 0.98], [0.5, 1.48]), 2, [12, 2], (0.0, 0.0));
-    system.bodies.push(Box::new(solid("wheel", wheel, degree, elastic, NEO_HOOKE)));
+    let block = brick::<2>(([-0.5, 0.95], [0.5, 1.45]), 2, [14, 2], (0.0, 0.0));
+    // Hard, so that it is the shape of the wheel that counts.
+    let hard = Elastic { youngs_modulus: 100.0, ..elastic };
+    system.bodies.push(Box::new(solid("wheel", wheel, degree, hard, NEO_HOOKE)));
     system.bodies.push(Box::new(solid("block", block, 2, elastic, NEO_HOOKE)));
     system.supports.push(hold(1, "top", [Some(0.0), Some(0.0), None]));
     let turning = |i: usize| -> signorini_mechanics::system::TimeField {
@@ -206,11 +214,10 @@ fn turned(wheel: Mesh<2>, degree: usize, [bore, rim]: [&str; 2], method: Samplin
     (0..2).for_each(|i| held.displacement[i] = Some(turning(i)));
     system.supports.push(held);
     let of = |body: usize, group: &str| (part(body, group), system.bodies[body].as_ref());
-    let contact =
-        Contact::new("touch", of(1, "bottom"), of(0, rim), method, Enforcement::AugmentedLagrangian).unwrap();
+    let contact = Contact::new("touch", of(1, "bottom"), of(0, rim), method, Enforcement::AugmentedLagrangian).unwrap();
     system.contacts.push(Box::new(contact));
-    // A cell of the wheel takes an eighth of pi.
-    let times: Vec<f64> = (0..=8).map(|k| 1.0 + k as f64 * std::f64::consts::FRAC_PI_8 / 8.0).collect();
+    // A facet of the wheel takes an eighth of pi.
+    let times: Vec<f64> = (0..=4).map(|k| 1.0 + k as f64 * std::f64::consts::FRAC_PI_8 / 4.0).collect();
     run(&mut system, &times).1.iter().map(|r| force(r, 0).y).collect()
 }
 
@@ -230,4 +237,56 @@ fn a_spline_is_a_smooth_master() {
     let facets = turned(facets, 2, ["left", "right"], Sampling::GaussPoints);
     println!("ripple of splines {:.2e}, of facets {:.2e}: {splines:?} {facets:?}", ripple(&splines), ripple(&facets));
     assert!(ripple(&splines) < 0.05 * ripple(&facets), "{splines:?} {facets:?}");
+}
+
+/// A shaft that is too large for its hub, both quarters of tubes with unlike cells, all turned by an angle: least and largest
+/// pressure, by the Gauss points of the slave with Nitsche's method or else by mortar.
+fn press_fit(slave: usize, nitsche: bool, angle: f64, excess: f64) -> [f64; 2] {
+    let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+    let mut system = System::default();
+    for (name, radii, cells) in [("shaft", [1.0, 2.0 + excess], [6, 2]), ("hub", [2.0, 3.0], [8, 2])] {
+        let mut patch = quarter(radii, 0).raised(3, cells).unwrap();
+        let (s, c) = angle.sin_cos();
+        patch.points.iter_mut().for_each(|x| *x = Point::<2>::new(c * x[0] - s * x[1], s * x[0] + c * x[1]));
+        let mesh = mesh_of_patches(&[patch]).unwrap();
+        system.bodies.push(Box::new(solid(name, mesh, 3, elastic, StressLaw::LinearElastic)));
+        let body = system.bodies.len() - 1;
+        // Planes of symmetry: no displacement along their normals.
+        for (group, normal) in [("left", [c, s]), ("right", [-s, c])] {
+            let along = Vector::<3>::new(normal[0], normal[1], 0.0);
+            let mut plane = hold(body, group, [None; 3]);
+            plane.along = Some((along, Arc::new(|_, _| 0.0)));
+            system.supports.push(plane);
+        }
+    }
+    let groups = ["top", "bottom"];
+    let of = |body: usize| (part(body, groups[body]), system.bodies[body].as_ref());
+    let contact: Box<dyn Interaction> = match nitsche {
+        false => Box::new(Mortar::new("fit", of(slave), of(1 - slave), Enforcement::Multiplier).unwrap()),
+        true => {
+            let points = Sampling::GaussPoints;
+            Box::new(Contact::new("fit", of(slave), of(1 - slave), points, Enforcement::Nitsche).unwrap())
+        }
+    };
+    system.contacts.push(contact);
+    let (_, results) = run(&mut system, &[1.0]);
+    let sites = results[0].sites[0].iter();
+    sites.map(|s| s.pressure).fold([f64::MAX, 0.0], |[l, h], p| [l.min(p), h.max(p)])
+}
+
+#[test]
+fn a_press_fit_has_the_pressure_of_lame_whatever_the_slave_and_the_direction() {
+    // p = E' δ/(b ((b²+a²)/(b²-a²) + (c²+b²)/(c²-b²))) of two tubes of one material.
+    let excess = 2e-5;
+    let exact = excess / 0.91 / (2.0 * (5.0 / 3.0 + 13.0 / 5.0));
+    for slave in [0, 1] {
+        for nitsche in [false, true] {
+            let found = press_fit(slave, nitsche, 0.0, excess);
+            let turned = press_fit(slave, nitsche, 0.7, excess);
+            let error = found.map(|p| p / exact - 1.0);
+            println!("slave {slave}, Nitsche {nitsche}: {error:?}, turned {:?}", turned.map(|p| p / exact - 1.0));
+            assert!(error.iter().all(|e| e.abs() < 2e-3), "{error:?}");
+            assert!((0..2).all(|k| (turned[k] / found[k] - 1.0).abs() < 1e-8), "{found:?} {turned:?}");
+        }
+    }
 }

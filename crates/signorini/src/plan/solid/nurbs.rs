@@ -3,8 +3,8 @@
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
 use crate::problem::{self, CaseError, List, Location, NurbsMesh};
-use signorini_fem::nurbs::{NurbsError, NurbsPatch, mesh_of_patches};
 use signorini_fem::Mesh;
+use signorini_fem::nurbs::{NurbsError, NurbsPatch, mesh_of_patches};
 use signorini_geometry::Point;
 
 /// What of a file is read.
@@ -28,7 +28,8 @@ enum From<'p> {
 }
 
 /// What helps where nothing is stated.
-const ONE_WAY: &str = "give one patch by degree, knots and points, several by patches = [{ … }, …], or file = \"….json\"";
+const ONE_WAY: &str =
+    "give one patch by degree, knots and points, several by patches = [{ … }, …], or file = \"….json\"";
 
 impl Planner<'_> {
     /// The mesh of patches, of the degree of the body where that is stated.
@@ -58,7 +59,9 @@ impl Planner<'_> {
         for (number, (patch, Stated { patch: of, from })) in patches.iter().zip(&stated).enumerate() {
             let mut cells = match &of.cells {
                 Some(cells) => match from {
-                    From::File(_) => counts::<D>(cells).map_err(|e| self.wrong_patch(key, *from, number, stated.len(), e))?,
+                    From::File(_) => {
+                        counts::<D>(cells).map_err(|e| self.wrong_patch(key, *from, number, stated.len(), e))?
+                    }
                     _ => self.cells_of_spans::<D>(cells)?,
                 },
                 None => of_mesh,
@@ -69,14 +72,16 @@ impl Planner<'_> {
             let fail = |error: NurbsError| self.wrong_patch(key, *from, number, stated.len(), error);
             raised.push(patch.raised(wanted, cells).map_err(fail)?);
         }
-        let cells: usize =
-            raised.iter().map(|p| p.lines.iter().map(|l| l.breaks().len() - 1).product::<usize>()).sum();
+        let cells: usize = raised.iter().map(|p| p.lines.iter().map(|l| l.breaks().len() - 1).product::<usize>()).sum();
         if cells > 1_000_000 {
             return Err(problem.error(key, format!("{cells} cells are more than this program can handle")));
         }
         let joined = mesh_of_patches(&raised);
         let mut mesh = joined.map_err(|e| self.wrong_patch(key, stated[e.patch].from, e.patch, stated.len(), e))?;
-        self.place_mesh(&mut mesh, &PlacementKeys { scale: &key.scale, rotate: &key.rotate, translate: &key.translate })?;
+        self.place_mesh(
+            &mut mesh,
+            &PlacementKeys { scale: &key.scale, rotate: &key.rotate, translate: &key.translate },
+        )?;
         mesh.check().map_err(|e| {
             problem.error(key, format!("the mesh of `{name}`: {e}")).help(format!(
                 "the map of the patch folds or is turned over there: if it is turned over everywhere, reverse the points (and \
@@ -120,7 +125,8 @@ impl Planner<'_> {
                 return missing("is not complete");
             };
             let (degree, knots, points) = (degree.clone(), knots.clone(), points.clone());
-            let patch = problem::NurbsPatch { name: None, degree, knots, points, weights: key.weights.clone(), cells: None };
+            let patch =
+                problem::NurbsPatch { name: None, degree, knots, points, weights: key.weights.clone(), cells: None };
             return Ok(vec![Stated { patch: std::borrow::Cow::Owned(patch), from: From::Mesh }]);
         }
         let of = |patch| Stated { patch: std::borrow::Cow::Borrowed(patch), from: From::List(patch) };
@@ -143,9 +149,7 @@ impl Planner<'_> {
         };
         let at = |location: &dyn Location| problem.error(&location.key_in(problem), message.clone());
         let found = match (from, error.key) {
-            (From::File(file), _) => {
-                problem.error(file, format!("`{}` in `{file}`: {message}", error.key))
-            }
+            (From::File(file), _) => problem.error(file, format!("`{}` in `{file}`: {message}", error.key)),
             (From::List(patch), "degree") => at(&patch.degree),
             (From::List(patch), "knots") => at(&patch.knots),
             (From::List(patch), "points") => at(&patch.points),
@@ -166,7 +170,9 @@ fn read<const D: usize>(patch: &problem::NurbsPatch) -> Result<NurbsPatch<D>, Nu
     let fail = |key, message: String, help: &str| NurbsError { key, patch: 0, message, help: help.into() };
     let directions = |found: usize, key| match found == D {
         true => Ok(()),
-        false => Err(fail(key, format!("expected {D} directions, found {found}"), "a patch in the plane has 2, in space 3")),
+        false => {
+            Err(fail(key, format!("expected {D} directions, found {found}"), "a patch in the plane has 2, in space 3"))
+        }
     };
     directions(patch.degree.len(), "degree")?;
     directions(patch.knots.len(), "knots")?;

@@ -133,7 +133,7 @@ pub fn mesh_of_patches<const D: usize>(patches: &[NurbsPatch<D>]) -> Result<Mesh
 /// The side of a cell that lies on a side of its patch.
 fn side_of(shape: CellShape, side: &PatchSide) -> u8 {
     let on = |corners: &&[usize]| corners.iter().all(|&c| (shape.vertices()[c][side.across] > 0.0) == side.upper);
-    shape.sides().iter().position(|corners| on(corners)).unwrap_or(0) as u8
+    shape.sides().iter().position(on).unwrap_or(0) as u8
 }
 
 fn index_in<const D: usize>(mut number: usize, grid: &[usize; D]) -> [usize; D] {

@@ -66,3 +66,39 @@ fn patches_that_meet_are_one_body() {
     assert_eq!(error.key, "knots");
     assert!(error.message.contains("`q1`") && error.message.contains("`q2`"), "{error}");
 }
+
+#[test]
+fn what_is_no_patch_is_refused_with_its_key() {
+    let square =
+        || vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].into_iter().map(Point::<2>::from).collect::<Vec<_>>();
+    let line = || vec![0.0, 0.0, 1.0, 1.0];
+    let of = |degree, knots: Vec<f64>, points: Vec<Point<2>>, weights: Option<Vec<f64>>| {
+        NurbsPatch::new("", [degree, 1], [knots, line()], points, weights).err().map_or("", |e| e.key)
+    };
+    assert_eq!(of(1, line(), square(), None), "");
+    assert_eq!(of(0, line(), square(), None), "degree");
+    assert_eq!(of(9, line(), square(), None), "degree");
+    for knots in [
+        vec![0.0, 0.0, 1.0],
+        vec![0.0, 0.0, 2.0, 1.0, 1.0],
+        vec![0.0, 0.0, 0.0, 0.0],
+        vec![0.0, 0.5, 1.0, 1.0],
+        vec![0.0, 0.0, f64::NAN, 1.0, 1.0],
+        vec![0.0, 0.0, 0.5, 0.5, 1.0, 1.0],
+    ] {
+        assert_eq!(of(1, knots.clone(), square(), None), "knots", "{knots:?}");
+    }
+    assert_eq!(of(1, line(), square()[..3].to_vec(), None), "points");
+    assert_eq!(of(1, line(), square(), Some(vec![1.0; 3])), "weights");
+    assert_eq!(of(1, line(), square(), Some(vec![1.0, 0.0, 1.0, 1.0])), "weights");
+    let patch = quarter("", [1.0, 2.0], 0);
+    assert_eq!(patch.raised(1, [1, 1]).unwrap_err().key, "degree");
+    assert_eq!(patch.raised(2, [0, 1]).unwrap_err().key, "cells");
+    // Turned over: the map has a negative Jacobian.
+    let mut turned = patch;
+    turned.points.iter_mut().for_each(|x| x[0] = -x[0]);
+    assert!(matches!(
+        mesh_of_patches(&[turned.raised(2, [2, 2]).unwrap()]).unwrap().check(),
+        Err(crate::MeshError::BadCell { what: "inverted", .. })
+    ));
+}

@@ -277,7 +277,7 @@ fn press_fit(slave: usize, nitsche: bool, angle: f64, excess: f64) -> [f64; 2] {
 #[test]
 fn a_press_fit_has_the_pressure_of_lame_whatever_the_slave_and_the_direction() {
     // p = E' δ/(b ((b²+a²)/(b²-a²) + (c²+b²)/(c²-b²))) of two tubes of one material.
-    let excess = 2e-5;
+    let excess = 2e-4;
     let exact = excess / 0.91 / (2.0 * (5.0 / 3.0 + 13.0 / 5.0));
     for slave in [0, 1] {
         for nitsche in [false, true] {
@@ -285,7 +285,9 @@ fn a_press_fit_has_the_pressure_of_lame_whatever_the_slave_and_the_direction() {
             let turned = press_fit(slave, nitsche, 0.7, excess);
             let error = found.map(|p| p / exact - 1.0);
             println!("slave {slave}, Nitsche {nitsche}: {error:?}, turned {:?}", turned.map(|p| p / exact - 1.0));
-            assert!(error.iter().all(|e| e.abs() < 2e-3), "{error:?}");
+            // The stress at points, which Nitsche's method takes, is of one order less than the mean over a function.
+            let most = if nitsche { 5e-3 } else { 2e-3 };
+            assert!(error.iter().all(|e| e.abs() < most), "{error:?}");
             assert!((0..2).all(|k| (turned[k] / found[k] - 1.0).abs() < 1e-8), "{found:?} {turned:?}");
         }
     }

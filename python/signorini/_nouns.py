@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'bd246f53db89abc0'
+SCHEMA = '44aa361cde4f1574'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -33,7 +33,7 @@ CHOICES = {
     'PathFriction': {'coulomb': 'PathCoulomb'},
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
     'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
-    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays'},
+    'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays', 'nurbs': 'NurbsMesh'},
 }
 
 class ActiveSetMethod(Noun):
@@ -1665,6 +1665,89 @@ class Nurbs(Noun):
         self.translate = translate
 
 
+class NurbsMesh(Noun):
+    """Patches of rational B-splines (NURBS), in the plane or in space. The spans between knots are the cells, and
+    the displacement has the functions of the patch. State one patch by its keys, several by `patches`, or a file.
+
+    cells: Number of cells into which each span of knots is divided, in each direction; 1 if left out. The shape
+        does not change.
+    degree: Degree in each direction, 1 to 8.
+    file: A JSON file: one patch by the keys `degree`, `knots`, `points` and `weights`, or several in a list
+        `patches`. The path is relative to the folder of the case.
+    knots: Knots of each direction, ascending. The first and the last are repeated `degree + 1` times.
+    patches: Several patches. Sides that coincide are joined: there control points, weights, knots and numbers of
+        cells must be the same.
+    points: Control points, the first direction fastest, in the base unit of length. There are as many in a
+        direction as knots less `degree + 1`.
+    rotate: Rotation vector in radians about the origin, applied after scaling; one angle in the plane.
+    scale: Length of one unit of the control points in base units; 1 if left out.
+    translate: Translation, applied after scaling and rotation; lengths.
+    weights: Weights of the control points, greater than 0; 1 if left out.
+    """
+
+    _key = 'nurbs'
+    _types = {'cells': ('cells', '[int]'), 'degree': ('degree', '[int]'), 'file': ('file', 'str'), 'knots': ('knots', '[[float]]'), 'patches': ('patches', '[NurbsPatch]'), 'points': ('points', '[[float]]'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'translate': ('translate', '[Value]'), 'weights': ('weights', '[float]')}
+
+    def __init__(
+        self,
+        *,
+        cells: Optional[Sequence[int] | Array] = None,
+        degree: Optional[Sequence[int] | Array] = None,
+        file: Optional[str] = None,
+        knots: Optional[Sequence[Sequence[float] | Array] | Array] = None,
+        patches: Optional[Sequence[NurbsPatch | Mapping[str, Any]] | Array] = None,
+        points: Optional[Sequence[Sequence[float] | Array] | Array] = None,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
+        weights: Optional[Sequence[float] | Array] = None,
+    ) -> None:
+        self.cells = cells
+        self.degree = degree
+        self.file = file
+        self.knots = knots
+        self.patches = patches
+        self.points = points
+        self.rotate = rotate
+        self.scale = scale
+        self.translate = translate
+        self.weights = weights
+
+
+class NurbsPatch(Noun):
+    """A patch of rational B-splines.
+
+    degree: Degree in each direction, 1 to 8.
+    knots: Knots of each direction, ascending. The first and the last are repeated `degree + 1` times.
+    points: Control points, the first direction fastest, in the base unit of length.
+    cells: Number of cells into which each span of knots is divided, in each direction; that of the mesh if left
+        out.
+    name: A name: `NAME` is then the group of the cells of the patch, and `NAME_left` and so on those of its
+        sides.
+    weights: Weights of the control points, greater than 0; 1 if left out.
+    """
+
+    _key = None
+    _types = {'degree': ('degree', '[int]'), 'knots': ('knots', '[[float]]'), 'points': ('points', '[[float]]'), 'cells': ('cells', '[int]'), 'name': ('name', 'str'), 'weights': ('weights', '[float]')}
+
+    def __init__(
+        self,
+        *,
+        degree: Sequence[int] | Array,
+        knots: Sequence[Sequence[float] | Array] | Array,
+        points: Sequence[Sequence[float] | Array] | Array,
+        cells: Optional[Sequence[int] | Array] = None,
+        name: Optional[str] = None,
+        weights: Optional[Sequence[float] | Array] = None,
+    ) -> None:
+        self.degree = degree
+        self.knots = knots
+        self.points = points
+        self.cells = cells
+        self.name = name
+        self.weights = weights
+
+
 class OffsetGeometry(Noun):
     """Offset: the points nearer to a geometry than a distance; if the distance is negative, the points deeper inside
     it.
@@ -2286,7 +2369,7 @@ class Solid(Noun):
     mesh: The mesh of the body.
     material: The material of the body.
     degree: Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells. If left out, the
-        order of the mesh.
+        order of the mesh. That of NURBS is raised without a change of their shape.
     edges: Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
     strain: Strain measure: `small` or `finite`; `small` if left out.
     """
@@ -2297,7 +2380,7 @@ class Solid(Noun):
     def __init__(
         self,
         *,
-        mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | Mapping[str, Any] | str,
+        mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | NurbsMesh | Mapping[str, Any] | str,
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         degree: Optional[int] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
@@ -2846,4 +2929,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

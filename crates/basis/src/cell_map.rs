@@ -1,19 +1,24 @@
 //! The map from a reference cell to space: Lagrange functions through the nodes of the cell.
 //!
+//! Cells of splines are mapped by their rational functions and control points instead.
+//!
 //! Nodes of tensor shapes are the Gauss-Lobatto points, the first direction fastest. Triangles and tetrahedra have their
 //! vertices first, then the middles of their edges; a wedge is a triangle times a line, the triangle fastest.
 
 use super::hierarchic::{MAX_DEGREE, Values, barycentric};
 use super::lagrange::TensorBasis;
+use super::rational::RationalBasis;
 use super::reference::{CellShape, Local};
+use std::sync::Arc;
 
-/// Lagrange functions of one shape and order.
+/// Lagrange functions of one shape and order, or the functions of a span of a spline.
 #[derive(Clone, Debug)]
 pub struct CellMap {
     shape: CellShape,
     order: usize,
     len: usize,
     line: TensorBasis<1>,
+    rational: Option<Arc<RationalBasis>>,
 }
 
 impl CellMap {
@@ -29,7 +34,18 @@ impl CellMap {
             CellShape::Tetrahedron => [4, 10][order - 1],
             tensor => n.pow(tensor.dimension() as u32),
         };
-        CellMap { shape, order, len, line: TensorBasis::new(order) }
+        CellMap { shape, order, len, line: TensorBasis::new(order), rational: None }
+    }
+
+    /// The map of a span of a spline, or of a face of one, by its control points.
+    pub fn spline(basis: Arc<RationalBasis>) -> Self {
+        let (shape, order, len) = (basis.shape(), basis.degree(), basis.len());
+        CellMap { shape, order, len, line: TensorBasis::new(order), rational: Some(basis) }
+    }
+
+    /// The functions of a spline, where they are such.
+    pub fn rational(&self) -> Option<&Arc<RationalBasis>> {
+        self.rational.as_ref()
     }
 
     pub fn shape(&self) -> CellShape {
@@ -49,8 +65,11 @@ impl CellMap {
         false
     }
 
-    /// The node at each vertex.
+    /// The node at each vertex; none of splines, whose control points are not points of the cell.
     pub fn vertex_nodes(&self) -> Vec<usize> {
+        if self.rational.is_some() {
+            return Vec::new();
+        }
         let n = self.order;
         let upper = |x: f64| if x > 0.0 { n } else { 0 };
         (self.shape.vertices().iter().enumerate())
@@ -62,8 +81,11 @@ impl CellMap {
             .collect()
     }
 
-    /// Reference coordinates of the nodes.
+    /// Reference coordinates of the nodes; of splines the point of the cell nearest to the Greville abscissae of each function.
     pub fn nodes(&self) -> Vec<Local> {
+        if let Some(basis) = &self.rational {
+            return (0..basis.len()).map(|f| basis.greville(f).map(|g| g.clamp(-1.0, 1.0))).collect();
+        }
         let line: Vec<f64> = self.line.line_nodes().iter().map(|x| 2.0 * x - 1.0).collect();
         let with_middles = |shape: CellShape| -> Vec<Local> {
             let vertices = shape.vertices();
@@ -95,6 +117,9 @@ impl CellMap {
 
     /// Values and gradients of all functions at a point of the reference cell, or near it.
     pub fn tabulate(&self, x: &Local, out: &mut Values) {
+        if let Some(basis) = &self.rational {
+            return basis.tabulate(x, out);
+        }
         out.clear();
         if matches!(self.shape, CellShape::Triangle | CellShape::Tetrahedron) {
             return self.simplex(self.shape, x, out);

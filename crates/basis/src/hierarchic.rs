@@ -10,6 +10,7 @@ use super::reference::{CellShape, Local};
 mod derivatives;
 
 pub use derivatives::Derivatives;
+pub(crate) use derivatives::{TIMES, along, place, product};
 
 /// The highest degree.
 pub const MAX_DEGREE: usize = 8;

@@ -1,10 +1,19 @@
-//! Faces as the polynomials that they are: through points on them, so that a place is found without the cell behind it.
+//! Faces as the polynomials that they are, through points on them, or as spans of splines: a place is found without the cell
+//! behind it.
 
 use crate::face_point::FacePoint;
 use signorini_basis::cell_map::CellMap;
 use signorini_basis::hierarchic::Values;
 use signorini_basis::{CellShape, Local};
 use signorini_geometry::Point;
+
+/// What a face is as a map.
+pub enum FaceForm<'a, const D: usize> {
+    /// A polynomial of this order.
+    Polynomial(CellShape, usize),
+    /// A span of a spline, with its control points.
+    Spline(&'a CellMap, Vec<Point<D>>),
+}
 
 /// The maps of a list of faces.
 pub struct FaceMaps<const D: usize> {
@@ -14,12 +23,21 @@ pub struct FaceMaps<const D: usize> {
 }
 
 impl<const D: usize> FaceMaps<D> {
-    /// Faces of the given shapes and orders, with the places of points on them.
-    pub fn new(shapes: impl Iterator<Item = (CellShape, usize)>, at: impl Fn(usize, &Local) -> Point<D>) -> Self {
+    /// Faces of the given forms, with the places of points on those that are polynomials.
+    pub fn new<'a>(forms: impl Iterator<Item = FaceForm<'a, D>>, at: impl Fn(usize, &Local) -> Point<D>) -> Self {
         let mut maps: Vec<CellMap> = Vec::new();
         let mut faces = Vec::new();
-        for (face, (shape, order)) in shapes.enumerate() {
-            let map = maps.iter().position(|m| m.shape() == shape && m.order() == order).unwrap_or_else(|| {
+        for (face, form) in forms.enumerate() {
+            let (shape, order) = match form {
+                FaceForm::Polynomial(shape, order) => (shape, order),
+                FaceForm::Spline(map, points) => {
+                    faces.push((maps.len(), points));
+                    maps.push(map.clone());
+                    continue;
+                }
+            };
+            let same = |m: &CellMap| m.shape() == shape && m.order() == order && m.rational().is_none();
+            let map = maps.iter().position(same).unwrap_or_else(|| {
                 maps.push(CellMap::new(shape, order));
                 maps.len() - 1
             });
@@ -38,7 +56,7 @@ impl<const D: usize> FaceMaps<D> {
             out.x += x * value;
             (0..D - 1).for_each(|a| out.tangents[a] += x * slopes[a]);
         };
-        if map.order() == 1 {
+        if map.order() == 1 && map.rational().is_none() {
             let shape = map.shape();
             let list = points.iter().enumerate();
             list.for_each(|(k, x)| add(x, shape.vertex_function(k, s), shape.vertex_slopes(k, s)));

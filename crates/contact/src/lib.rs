@@ -23,7 +23,7 @@ pub mod surface;
 mod testing;
 pub mod zone;
 
-pub use face_maps::FaceMaps;
+pub use face_maps::{FaceForm, FaceMaps};
 pub use face_point::FacePoint;
 pub use law::{Coulomb, Law, LawError, Status, Tresca, Viscous};
 pub use mortar::{DualWeights, compress, dual_weights_unmerged, shares, weightless};
@@ -31,5 +31,5 @@ pub use multiplier::{MergedNode, PressureNodes};
 pub use recovery::{Pressed, recovered, unpressed};
 pub use segments::{GapPoint, Sight, pieces, segments, whole_faces};
 pub use signorini_geometry::rigid_shape::GapJet;
-pub use surface::{ContactSurface, Moved, ShapeFunction, is_facing};
+pub use surface::{ContactSurface, Moved, ShapeFunction, SplineFace, is_facing};
 pub use zone::{ContactZone, NodeState, connected, zone};

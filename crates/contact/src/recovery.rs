@@ -3,7 +3,7 @@
 //! On faces of degree 2 it is the projection `∫ p N_l = F_l` on the Lagrange functions of the active nodes, `F_l` the work
 //! of the contact forces on `N_l`. This takes the ripple between vertices and mid-side nodes away, and needs no function
 //! to have an integral of its own: those of the vertices of quadratic triangles have none. For other degrees the
-//! multipliers at the nodes are as good.
+//! multipliers at the nodes are as good, and on splines, whose functions have no nodes, they are means over a few faces.
 //!
 //! On the axis of a body of revolution the functions of degree 2 and more have no integral with the weight of the radius
 //! either; there the pressure is the one whose slope along the radius vanishes.
@@ -46,7 +46,9 @@ struct Even {
 fn even<const D: usize>(slave: &dyn ContactSurface<D>, nodes: &PressureNodes<D>) -> Vec<Even> {
     let mut out = Vec::new();
     let mut at = Values::default();
-    for face in (0..nodes.face_count()).filter(|&f| D == 2 && nodes.map(f).order() > 1) {
+    for face in
+        (0..nodes.face_count()).filter(|&f| D == 2 && nodes.map(f).order() > 1 && nodes.map(f).rational().is_none())
+    {
         let list = nodes.of_face(face);
         let radii: Vec<f64> = list.iter().map(|(k, _)| slave.measure(&nodes.positions[*k as usize])).collect();
         let most = radii.iter().fold(0.0f64, |m, r| m.max(*r));
@@ -100,7 +102,7 @@ fn project<const D: usize>(
     even: &[Even],
     out: &mut [f64],
 ) {
-    let quadratic = |face: usize| nodes.map(face).order() == 2;
+    let quadratic = |face: usize| nodes.map(face).order() == 2 && nodes.map(face).rational().is_none();
     // Every node is a combination of unknowns: one of its own, or those of other nodes.
     let mut combination: Vec<Vec<(u32, f64)>> = vec![Vec::new(); nodes.len()];
     let mut dependent = known.to_vec();

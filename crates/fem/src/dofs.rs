@@ -1,12 +1,15 @@
-//! Numbering of the hierarchic functions of a mesh, with the orientation of edges and sides.
+//! Numbering of the functions of a mesh: hierarchic ones with the orientation of edges and sides, and those of splines, which
+//! have the numbers of their control points.
 //!
 //! Edges run from the lower to the higher vertex number; quadrilateral sides have their origin at the lowest vertex and
 //! their first axis towards the lower of its neighbours. A function of odd degree along a reversed axis changes sign.
 
-use super::hierarchic::{HierarchicBasis, Mode, spanned};
+use super::cell_basis::CellBasis;
+use super::hierarchic::{HierarchicBasis, Mode, Values, spanned};
 use super::mesh::{Mesh, Side};
 use super::reference::CellShape;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A node without a function.
 const NONE: u32 = u32::MAX;
@@ -14,7 +17,7 @@ const NONE: u32 = u32::MAX;
 /// The functions of all cells.
 #[derive(Clone, Debug)]
 pub struct DofMap {
-    bases: Vec<HierarchicBasis>,
+    bases: Vec<CellBasis>,
     basis_of: Vec<u32>,
     start: Vec<u32>,
     /// Number of every function of every cell, and its sign, where there are others than +1.
@@ -28,9 +31,14 @@ pub struct DofMap {
 impl DofMap {
     /// Numbers the functions of the given degree on a mesh.
     ///
+    /// The functions of a spline have the degree of its mesh.
+    ///
     /// # Panics
     /// If the degree is above 2 on a mesh with cells other than quadrilaterals and hexahedra.
     pub fn new<const D: usize>(mesh: &Mesh<D>, degree: usize) -> Self {
+        if mesh.is_spline() {
+            return DofMap::of_splines(mesh);
+        }
         let mut start = Vec::with_capacity(mesh.cell_count() + 1);
         start.push(0);
         let mut map = DofMap {
@@ -50,7 +58,7 @@ impl DofMap {
             let shape = mesh.shape(cell);
             let found = map.bases.iter().position(|b| b.shape() == shape);
             let basis = found.unwrap_or_else(|| {
-                map.bases.push(HierarchicBasis::new(shape, degree));
+                map.bases.push(CellBasis::Hierarchic(HierarchicBasis::new(shape, degree)));
                 map.bases.len() - 1
             });
             map.basis_of.push(basis as u32);
@@ -99,12 +107,55 @@ impl DofMap {
         map
     }
 
+    fn of_splines<const D: usize>(mesh: &Mesh<D>) -> Self {
+        let mut map = DofMap {
+            bases: Vec::new(),
+            basis_of: Vec::new(),
+            start: vec![0],
+            functions: Vec::new(),
+            signs: Vec::new(),
+            count: 0,
+            vertices: vec![NONE; mesh.nodes().len()],
+        };
+        let mut at = Values::default();
+        for cell in 0..mesh.cell_count() {
+            let Some(basis) = mesh.map(cell).rational() else { continue };
+            map.basis_of.push(map.bases.len() as u32);
+            map.bases.push(CellBasis::Rational(Arc::clone(basis)));
+            let controls = mesh.cell_nodes(cell);
+            map.functions.extend_from_slice(controls);
+            map.start.push(map.functions.len() as u32);
+            map.count = controls.iter().fold(map.count, |n, c| n.max(*c as usize + 1));
+            // At the corners of a patch one function is alone.
+            for (vertex, xi) in mesh.vertices(cell).zip(basis.shape().vertices()) {
+                basis.tabulate(xi, &mut at);
+                let alone = at.value.iter().position(|v| (v - 1.0).abs() < 1e-12);
+                map.vertices[vertex as usize] = alone.map_or(map.vertices[vertex as usize], |k| controls[k]);
+            }
+        }
+        map
+    }
+
+    /// Whether the functions are those of splines.
+    pub fn is_spline(&self) -> bool {
+        self.bases.iter().any(CellBasis::is_spline)
+    }
+
+    /// The functions that add up to one: the sum of the forces on them is the resultant. They are those of the vertices, and of
+    /// splines all.
+    pub fn unity(&self) -> Vec<u32> {
+        if self.is_spline() {
+            return (0..self.count as u32).collect();
+        }
+        self.vertices.iter().copied().filter(|function| *function != NONE).collect()
+    }
+
     /// Number of functions.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    pub fn basis(&self, cell: usize) -> &HierarchicBasis {
+    pub fn basis(&self, cell: usize) -> &CellBasis {
         &self.bases[self.basis_of[cell] as usize]
     }
 
@@ -137,6 +188,9 @@ impl DofMap {
     /// Places, in the list of the cell, of the functions that do not vanish on a side.
     pub fn on_side(&self, side: Side) -> Vec<usize> {
         let basis = self.basis(side.cell as usize);
+        if let CellBasis::Rational(basis) = basis {
+            return basis.on_side(side.side as usize);
+        }
         let shape = basis.shape();
         let corners = shape.sides()[side.side as usize];
         let on = |mode: &Mode| match mode {
@@ -177,7 +231,6 @@ fn orientation(shape: CellShape, corners: &[usize], vertices: &[u32]) -> (bool, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hierarchic::Values;
     use signorini_geometry::Point;
 
     /// Two hexahedra side by side, the second turned in all 24 ways: functions agree on the common side.

@@ -6,6 +6,7 @@
 //! - [`overlap`]: whether cells of a mesh cover the same place; [`pieces`]: which hang together.
 //! - [`mesh_refinement`]: meshes of the plane, each cell divided into four; [`graded_mesh`]: only where it matters.
 //! - [`halved`]: meshes of any cells with all of them divided.
+//! - [`nurbs`]: meshes of spline patches.
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
 //! - [`cells`]: what a membrane is computed on, whatever kind of cells.
 //! - [`cut`]: quadrature on cells that are divided by implicit surfaces: volume, surface and normal.
@@ -30,6 +31,7 @@ mod lists;
 pub mod mesh;
 pub mod mesh_cells;
 pub mod mesh_refinement;
+pub mod nurbs;
 pub mod overlap;
 pub mod pieces;
 pub mod refined_grid;
@@ -44,7 +46,8 @@ pub use grid::Grid;
 pub use halved::Halved;
 pub use mesh::{Group, Mesh, MeshError, NodeBetween, Side};
 pub use mesh_cells::MeshCells;
+pub use nurbs::{NurbsError, NurbsPatch};
 pub use overlap::Overlap;
 pub use refined_grid::RefinedGrid;
-pub use signorini_basis::{CellShape, Local, TensorBasis, gauss_legendre};
-pub use signorini_basis::{cell_map, hierarchic, lagrange, reference, rules, small};
+pub use signorini_basis::{CellBasis, CellShape, Local, RationalBasis, TensorBasis, gauss_legendre};
+pub use signorini_basis::{cell_basis, cell_map, hierarchic, lagrange, rational, reference, rules, small};

@@ -2,9 +2,11 @@
 
 use super::cell_map::CellMap;
 use super::hierarchic::Values;
+use super::rational::RationalBasis;
 use super::reference::{CellShape, Local};
 use signorini_geometry::{Matrix, Point};
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 /// One side of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -40,7 +42,8 @@ struct Cell {
     first: u32,
 }
 
-/// A mesh of a body in `D` dimensions.
+/// A mesh of a body in `D` dimensions. The cells of a spline are its spans: their nodes are control points, and further nodes are
+/// at their vertices.
 #[derive(Clone, Debug)]
 pub struct Mesh<const D: usize> {
     nodes: Vec<Point<D>>,
@@ -89,7 +92,8 @@ impl<const D: usize> Mesh<D> {
 
     /// Adds a cell with its nodes in the order of [`CellMap`].
     pub fn add_cell(&mut self, shape: CellShape, order: usize, nodes: &[u32]) -> u32 {
-        let found = self.maps.iter().position(|m| m.shape() == shape && m.order() == order);
+        let same = |m: &CellMap| m.shape() == shape && m.order() == order && m.rational().is_none();
+        let found = self.maps.iter().position(same);
         let map = found.unwrap_or_else(|| {
             let map = CellMap::new(shape, order);
             self.vertex_places.push(map.vertex_nodes());
@@ -100,6 +104,23 @@ impl<const D: usize> Mesh<D> {
         self.cells.push(Cell { map: map as u32, first: self.cell_nodes.len() as u32 });
         self.cell_nodes.extend_from_slice(nodes);
         (self.cells.len() - 1) as u32
+    }
+
+    /// Adds a span of a spline with its control points, and nodes at its vertices in the order of the reference cell.
+    pub fn add_span(&mut self, basis: Arc<RationalBasis>, controls: &[u32], vertices: &[u32]) -> u32 {
+        debug_assert_eq!(controls.len(), basis.len());
+        // Vertices stand behind the control points.
+        self.vertex_places.push((controls.len()..controls.len() + vertices.len()).collect());
+        self.maps.push(CellMap::spline(basis));
+        self.cells.push(Cell { map: self.maps.len() as u32 - 1, first: self.cell_nodes.len() as u32 });
+        self.cell_nodes.extend_from_slice(controls);
+        self.cell_nodes.extend_from_slice(vertices);
+        (self.cells.len() - 1) as u32
+    }
+
+    /// Whether the cells are spans of splines.
+    pub fn is_spline(&self) -> bool {
+        self.maps.iter().any(|map| map.rational().is_some())
     }
 
     /// Makes room for so many triangles of order 1.
@@ -156,16 +177,16 @@ impl<const D: usize> Mesh<D> {
 
     /// The nodes at the vertices of a cell.
     pub fn vertices(&self, cell: usize) -> impl Iterator<Item = u32> + '_ {
-        let nodes = self.cell_nodes(cell);
-        self.vertex_places[self.cells[cell].map as usize].iter().map(move |&k| nodes[k])
+        let first = self.cells[cell].first as usize;
+        self.vertex_places[self.cells[cell].map as usize].iter().map(move |&k| self.cell_nodes[first + k])
     }
 
     /// The nodes at the vertices of a side, in the order of the side.
     pub fn side_vertices(&self, side: Side) -> Vec<u32> {
         let cell = side.cell as usize;
         let places = &self.vertex_places[self.cells[cell].map as usize];
-        let nodes = self.cell_nodes(cell);
-        self.shape(cell).sides()[side.side as usize].iter().map(|&v| nodes[places[v]]).collect()
+        let first = self.cells[cell].first as usize;
+        self.shape(cell).sides()[side.side as usize].iter().map(|&v| self.cell_nodes[first + places[v]]).collect()
     }
 
     pub fn side_shape(&self, side: Side) -> CellShape {

@@ -6,7 +6,7 @@ use signorini_basis::CellShape;
 use signorini_basis::cell_map::CellMap;
 use signorini_contact::{ContactSurface, ContactZone, NodeState, PressureNodes, Status, unpressed, zone};
 use signorini_geometry::Point;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A surface of faces between the sites of a contact, where it is in a state.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,9 +40,14 @@ impl ShownSurface {
     /// The surface between the pressure nodes of its faces; `site` tells the site that a node is, none where one is none.
     pub(crate) fn new<const D: usize>(nodes: &PressureNodes<D>, site: &dyn Fn(u32) -> Option<u32>) -> Option<Self> {
         let mut out = ShownSurface::default();
+        // Functions of splines reach over several faces.
+        let mut seen: HashSet<Vec<u32>> = HashSet::new();
         for face in 0..nodes.face_count() {
             let list = nodes.of_face(face);
-            let parts = flat(nodes.map(face));
+            let mut parts = flat(nodes.map(face));
+            if nodes.map(face).rational().is_some() {
+                parts.retain(|part| seen.insert(part.iter().map(|k| list[*k].0).collect()));
+            }
             out.of_face.extend(std::iter::repeat_n(face, parts.len()));
             for part in parts {
                 out.faces.push(part.iter().map(|k| site(list[*k].0)).collect::<Option<Vec<u32>>>()?);

@@ -1,7 +1,7 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
 use super::material::Material;
-use super::{Beam, CellsBody, Components, List, MeshArrays, Named, Rigid, Rope, Value};
+use super::{Beam, CellsBody, Components, List, MeshArrays, Named, NurbsMesh, Rigid, Rope, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub struct Solid {
     /// The mesh of the body.
     pub mesh: SolidMesh,
     /// Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells. If left out, the order of the
-    /// mesh.
+    /// mesh. That of NURBS is raised without a change of their shape.
     pub degree: Option<i64>,
     /// The material of the body.
     pub material: Material,
@@ -78,8 +78,8 @@ pub enum SolidMesh {
     File(MeshFile),
     /// A mesh from arrays.
     Arrays(MeshArrays),
-    #[schemars(skip)]
-    Nurbs(toml::Table),
+    /// Patches of NURBS: the exact shape, with smooth functions.
+    Nurbs(NurbsMesh),
 }
 
 /// A box of cells, uniform between two corners or graded along the axes. A map may move every point.

@@ -1,7 +1,8 @@
 //! Bodies and their boundaries.
 
 use crate::material::{Elastic, Space};
-use signorini_contact::{ContactSurface, FaceMaps, FacePoint, ShapeFunction};
+use signorini_contact::{ContactSurface, FaceForm, FaceMaps, FacePoint, ShapeFunction, SplineFace};
+use signorini_fem::cell_map::CellMap;
 use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
 use signorini_geometry::Point;
@@ -23,17 +24,16 @@ impl<const D: usize> Body<D> {
         D * self.dofs.count()
     }
 
-    /// The first unknown of each function of a vertex. These functions sum to one: the sum of the forces on them is the
-    /// resultant.
-    pub fn vertex_unknowns(&self) -> impl Iterator<Item = usize> + '_ {
-        let vertices = 0..self.mesh.nodes().len() as u32;
-        vertices.filter_map(|v| self.dofs.vertex(v)).map(|f| self.first + D * f as usize)
+    /// The first unknown of each function of a vertex, of a spline of each function. These functions sum to one: the sum of the
+    /// forces on them is the resultant.
+    pub fn unity_unknowns(&self) -> impl Iterator<Item = usize> + '_ {
+        self.dofs.unity().into_iter().map(|f| self.first + D * f as usize)
     }
 
     /// For every unknown of the body the direction that a force on it counts for in the resultant; none where it does not.
     pub fn directions(&self) -> Vec<Option<usize>> {
         let mut out = vec![None; self.unknowns()];
-        for k in self.vertex_unknowns() {
+        for k in self.unity_unknowns() {
             (0..D).for_each(|i| out[k - self.first + i] = Some(i));
         }
         out
@@ -41,11 +41,14 @@ impl<const D: usize> Body<D> {
 
     /// The resultant of forces on the unknowns of all bodies, those on this one.
     pub fn resultant(&self, forces: &[f64]) -> Point<D> {
-        self.vertex_unknowns().map(|k| Point::<D>::from_fn(|i, _| forces[k + i])).sum()
+        self.unity_unknowns().map(|k| Point::<D>::from_fn(|i, _| forces[k + i])).sum()
     }
 
-    /// Where every function has its vertex, or the middle of its edge, side or cell.
+    /// Where every function has its vertex, or the middle of its edge, side or cell; of a spline its control point.
     pub fn function_positions(&self) -> Vec<Point<D>> {
+        if self.dofs.is_spline() {
+            return self.mesh.nodes()[..self.dofs.count()].to_vec();
+        }
         let mut out = vec![Point::<D>::zeros(); self.dofs.count()];
         for cell in 0..self.mesh.cell_count() {
             let shape = self.mesh.shape(cell);
@@ -65,6 +68,20 @@ impl<const D: usize> Body<D> {
             }
         }
         out
+    }
+}
+
+impl<const D: usize> Body<D> {
+    /// A side of the boundary as a span of a spline, where it is one.
+    pub fn spline_face(&self, side: Side) -> Option<SplineFace<D>> {
+        let cell = side.cell as usize;
+        let (basis, places) = self.mesh.map(cell).rational()?.side(side.side as usize)?;
+        let functions: Vec<u32> = places.iter().map(|&k| self.dofs.functions(cell)[k]).collect();
+        Some(SplineFace {
+            map: CellMap::spline(Arc::new(basis)),
+            points: functions.iter().map(|f| self.mesh.nodes()[*f as usize]).collect(),
+            unknowns: functions.iter().map(|f| (self.first + D * *f as usize) as u32).collect(),
+        })
     }
 }
 
@@ -106,9 +123,13 @@ impl<const D: usize> Bodies<D> {
     pub fn surface(&self, body: usize, sides: Vec<Side>) -> BodySurface<D> {
         let b = self.list[body].clone();
         let functions = sides.iter().map(|s| b.dofs.on_side(*s)).collect();
-        let map = |side: &Side| (b.mesh.side_shape(*side), b.mesh.map(side.cell as usize).order());
-        let at_rest = FaceMaps::new(sides.iter().map(map), |face, s| b.mesh.on_side(sides[face], s).0);
-        BodySurface { axisymmetric: self.space == Space::Axisymmetric, functions, at_rest, body: b, sides }
+        let splines: Vec<Option<SplineFace<D>>> = sides.iter().map(|side| b.spline_face(*side)).collect();
+        let polynomial =
+            |side: &Side| FaceForm::Polynomial(b.mesh.side_shape(*side), b.mesh.map(side.cell as usize).order());
+        let forms = sides.iter().zip(&splines);
+        let forms = forms.map(|(side, spline)| spline.as_ref().map_or_else(|| polynomial(side), SplineFace::form));
+        let at_rest = FaceMaps::new(forms, |face, s| b.mesh.on_side(sides[face], s).0);
+        BodySurface { axisymmetric: self.space == Space::Axisymmetric, functions, splines, at_rest, body: b, sides }
     }
 }
 
@@ -119,6 +140,7 @@ pub struct BodySurface<const D: usize> {
     pub sides: Vec<Side>,
     /// Places of the functions of each side in the list of its cell.
     functions: Vec<Vec<usize>>,
+    splines: Vec<Option<SplineFace<D>>>,
     at_rest: FaceMaps<D>,
 }
 
@@ -163,6 +185,12 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
     }
 
     fn trace(&self, face: usize, s: &Local, out: &mut Vec<(u32, f64)>) {
+        if let Some(spline) = &self.splines[face] {
+            let mut at = Values::default();
+            spline.map.tabulate(s, &mut at);
+            out.extend(spline.unknowns.iter().copied().zip(at.value));
+            return;
+        }
         let side = self.sides[face];
         let cell = side.cell as usize;
         let basis = self.body.dofs.basis(cell);
@@ -176,6 +204,12 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
     }
 
     fn functions(&self, face: usize, s: &Local) -> Vec<ShapeFunction> {
+        if let Some(spline) = &self.splines[face] {
+            let mut at = Values::default();
+            spline.map.tabulate(s, &mut at);
+            let list = spline.unknowns.iter().zip(at.value.iter().zip(&at.gradient));
+            return list.map(|(f, (v, g))| ShapeFunction { unknown: *f, value: *v, slopes: [g[0], g[1]] }).collect();
+        }
         let side = self.sides[face];
         let cell = side.cell as usize;
         let basis = self.body.dofs.basis(cell);
@@ -187,6 +221,10 @@ impl<const D: usize> ContactSurface<D> for BodySurface<D> {
                 ShapeFunction { unknown, value: sign * d[0], slopes: [sign * d[1], sign * d[2]] }
             })
             .collect()
+    }
+
+    fn spline(&self, face: usize) -> Option<&SplineFace<D>> {
+        self.splines[face].as_ref()
     }
 
     fn vertices(&self, face: usize) -> Vec<u32> {

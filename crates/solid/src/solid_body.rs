@@ -52,6 +52,8 @@ pub enum SolidError {
     Strain(#[from] StrainError),
     #[error("degree {degree} on a {shape}: valid are 1 to {most}")]
     Degree { degree: usize, shape: &'static str, most: usize },
+    #[error("degree {degree} on a spline of degree {of_mesh}: the mesh has to be raised to the degree of the body")]
+    Spline { degree: usize, of_mesh: usize },
     #[error("Young's modulus {youngs_modulus} and Poisson's ratio {poissons_ratio}: valid are > 0, and > -1 and < 0.5")]
     Material { youngs_modulus: f64, poissons_ratio: f64 },
     #[error("{space:?} is not a space for bodies in {dimension} dimensions")]
@@ -104,6 +106,9 @@ impl<const D: usize> SolidBody<D> {
         }
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
+            if mesh.map(cell).rational().is_some_and(|basis| basis.degree() != degree) {
+                return Err(SolidError::Spline { degree, of_mesh: mesh.map(cell).order() });
+            }
             let most = if shape.is_tensor() { signorini_fem::hierarchic::MAX_DEGREE } else { 2 };
             if !(1..=most).contains(&degree) {
                 return Err(SolidError::Degree { degree, shape: shape.name(), most });
@@ -358,7 +363,7 @@ impl<const D: usize> Body for SolidBody<D> {
     fn rigid_modes(&self, state: &BodyState) -> [Vec<f64>; 6] {
         let body = self.body();
         let mut is_vertex = vec![false; body.dofs.count()];
-        body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
+        body.unity_unknowns().for_each(|k| is_vertex[k / D] = true);
         std::array::from_fn(|mode| {
             let mut out = vec![0.0; self.unknowns()];
             for (f, position) in self.position.iter().enumerate() {

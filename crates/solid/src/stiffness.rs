@@ -4,14 +4,15 @@
 //! divergence is replaced by its projection on polynomials of one degree less, discontinuous from cell to cell (for
 //! bilinear cells the mean dilatation of Nagtegaal, Parks & Rice 1974, for degree 2 the pair Q2/P1): the pressure has no
 //! more unknowns than the displacement can follow, and nothing locks. Triangles and tetrahedra of degree one cannot be
-//! helped in this way.
+//! helped in this way, and splines of degree 2 and more, whose cells have few functions of their own, must not be: for a material
+//! that hardly compresses they are better of a high degree.
 
 use crate::material::{Elastic, Space};
 use nalgebra::{DMatrix, Matrix3};
-use signorini_fem::hierarchic::{HierarchicBasis, Values};
+use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;
 use signorini_fem::small::{determinant, inverse};
-use signorini_fem::{CellShape, DofMap, Local, Mesh};
+use signorini_fem::{CellBasis, CellShape, DofMap, Local, Mesh};
 use signorini_geometry::Point;
 
 /// Poisson's ratio from which the divergence is projected on cells of any degree.
@@ -29,7 +30,10 @@ impl Table {
     pub fn new<const D: usize>(mesh: &Mesh<D>, dofs: &DofMap, cell: usize) -> Self {
         let (map, basis) = (mesh.map(cell), dofs.basis(cell));
         // Straight cells are integrated exactly, or as well as is customary.
-        let n = basis.degree() + 1 + usize::from(map.order() > 1);
+        let n = match map.rational() {
+            Some(rational) if !rational.is_polynomial() => points_of_rational(mesh, cell),
+            _ => basis.degree() + 1 + usize::from(map.order() > 1),
+        };
         let points = rule(map.shape(), n);
         let tabulate = |f: &dyn Fn(&Local, &mut Values)| {
             (points.iter())
@@ -46,9 +50,37 @@ impl Table {
     }
 }
 
+/// Error of the integrals of gradients, relative to their sum, that is none beside that of the functions.
+const EXACT: f64 = 1e-10;
+/// Points along each direction beyond the degree: with so many integrals are taken for exact, and fewer than that are used.
+const MOST: usize = 6;
+
+/// Points along each direction with which a constant stress on a span of a rational spline loads every function with the integral
+/// of its gradient.
+fn points_of_rational<const D: usize>(mesh: &Mesh<D>, cell: usize) -> usize {
+    let map = mesh.map(cell);
+    let mut at = Values::default();
+    let mut integrals = |n: usize| {
+        let mut out = vec![Point::<D>::zeros(); map.len()];
+        for (x, w) in rule(map.shape(), n) {
+            map.tabulate(&x, &mut at);
+            let (_, jacobian) = mesh.jacobian(cell, &at);
+            let weighted = inverse(&jacobian) * (w * determinant(&jacobian));
+            for (sum, gradient) in out.iter_mut().zip(&at.gradient) {
+                *sum += Point::<D>::from_fn(|i, _| (0..D).map(|k| gradient[k] * weighted[(k, i)]).sum());
+            }
+        }
+        out
+    };
+    let exact = integrals(map.order() + MOST);
+    let scale: f64 = exact.iter().map(|g| g.norm()).sum();
+    let mut differs = |n: &usize| integrals(*n).iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    (map.order() + 1..map.order() + MOST).find(|n| differs(n) <= EXACT * scale).unwrap_or(map.order() + MOST - 1)
+}
+
 /// Whether the divergence is projected on a cell.
-pub fn projects(basis: &HierarchicBasis, material: &Elastic, space: Space) -> bool {
-    if space == Space::PlaneStress {
+pub fn projects(basis: &CellBasis, material: &Elastic, space: Space) -> bool {
+    if space == Space::PlaneStress || basis.is_spline() && basis.degree() > 1 {
         return false;
     }
     let nearly = material.poissons_ratio > NEARLY_INCOMPRESSIBLE;
@@ -68,7 +100,7 @@ struct Derivatives<const D: usize> {
 }
 
 impl<const D: usize> Derivatives<D> {
-    fn new(mesh: &Mesh<D>, cell: usize, table: &Table, basis: &HierarchicBasis, space: Space) -> Self {
+    fn new(mesh: &Mesh<D>, cell: usize, table: &Table, basis: &CellBasis, space: Space) -> Self {
         let n = basis.len();
         let count = table.points.len();
         let mut gradients = vec![DMatrix::<f64>::zeros(n, count); D];
@@ -123,7 +155,7 @@ pub(crate) fn stiffness<const D: usize>(
     mesh: &Mesh<D>,
     cell: usize,
     table: &Table,
-    basis: &HierarchicBasis,
+    basis: &CellBasis,
     material: &Elastic,
     space: Space,
 ) -> DMatrix<f64> {
@@ -194,7 +226,7 @@ pub(crate) fn traction<const D: usize>(
     mesh: &Mesh<D>,
     cell: usize,
     table: &Table,
-    basis: &HierarchicBasis,
+    basis: &CellBasis,
     (material, space): (&Elastic, Space),
     (xi, normal): (&Local, &Point<D>),
 ) -> Vec<Point<D>> {
@@ -228,7 +260,7 @@ pub(crate) fn traction<const D: usize>(
 }
 
 /// Polynomials on which the divergence is projected, at the quadrature points.
-pub(crate) fn pressures<const D: usize>(basis: &HierarchicBasis, table: &Table) -> DMatrix<f64> {
+pub(crate) fn pressures<const D: usize>(basis: &CellBasis, table: &Table) -> DMatrix<f64> {
     let most = if basis.shape().is_tensor() { basis.degree() - 1 } else { 0 };
     let mut exponents = Vec::new();
     for i in 0..=most {

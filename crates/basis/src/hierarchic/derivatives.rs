@@ -9,17 +9,18 @@ use crate::reference::Local;
 pub type Derivatives = [f64; 10];
 
 /// How often each of [`Derivatives`] is taken along `a` and `b`.
-const TIMES: [[usize; 2]; 10] = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
+pub(crate) const TIMES: [[usize; 2]; 10] =
+    [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
 const BINOMIAL: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
 
 /// Place in [`Derivatives`] of those taken `i` and `j` times.
-fn place(i: usize, j: usize) -> usize {
+pub(crate) fn place(i: usize, j: usize) -> usize {
     (i + j) * (i + j + 1) / 2 + j
 }
 
 /// The product of two functions, with derivatives up to an order.
-fn product(f: &Derivatives, g: &Derivatives, order: usize) -> Derivatives {
+pub(crate) fn product(f: &Derivatives, g: &Derivatives, order: usize) -> Derivatives {
     let mut out = [0.0; 10];
     for (sum, [i, j]) in out.iter_mut().zip(TIMES).take(place(0, order) + 1) {
         for p in 0..=i {
@@ -32,7 +33,7 @@ fn product(f: &Derivatives, g: &Derivatives, order: usize) -> Derivatives {
 }
 
 /// A function with given derivatives of a linear function with these slopes, up to an order.
-fn along(f: &[f64; 4], slopes: [f64; 2], order: usize) -> Derivatives {
+pub(crate) fn along(f: &[f64; 4], slopes: [f64; 2], order: usize) -> Derivatives {
     let powers = slopes.map(|s| [1.0, s, s * s, s * s * s]);
     let mut out = [0.0; 10];
     for (d, [i, j]) in out.iter_mut().zip(TIMES).take(place(0, order) + 1) {

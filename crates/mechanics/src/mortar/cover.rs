@@ -86,8 +86,8 @@ impl Nodes {
     /// Face and point of every node.
     pub fn places(&self) -> Vec<(usize, Local)> {
         match self {
-            Nodes::Plane(nodes) => places(nodes),
-            Nodes::Space(nodes) => places(nodes),
+            Nodes::Plane(nodes) => nodes.places().to_vec(),
+            Nodes::Space(nodes) => nodes.places().to_vec(),
         }
     }
 
@@ -129,16 +129,6 @@ impl Nodes {
             _ => FacingPart::none(merged.len()),
         }
     }
-}
-
-fn places<const D: usize>(nodes: &PressureNodes<D>) -> Vec<(usize, Local)> {
-    let mut out = vec![(0, [0.0; 3]); nodes.len()];
-    for face in (0..nodes.face_count()).rev() {
-        for ((node, _), s) in nodes.of_face(face).iter().zip(nodes.map(face).nodes()) {
-            out[*node as usize] = (face, s);
-        }
-    }
-    out
 }
 
 fn whole<const D: usize>(

@@ -6,6 +6,7 @@ mod friction;
 mod interface;
 mod material;
 mod mesh;
+mod nurbs;
 mod orthotropic;
 mod rubber;
 
@@ -46,7 +47,7 @@ impl Planner<'_> {
             }
             SolidMesh::File(file) => self.mesh_of_file::<D>(file)?,
             SolidMesh::Arrays(arrays) => self.mesh_of_arrays::<D>(arrays)?,
-            SolidMesh::Nurbs(_) => return Err(self.unavailable(&key.mesh, "a NURBS solid")),
+            SolidMesh::Nurbs(patches) => self.nurbs::<D>(name, patches, key.degree.as_ref())?,
         };
         let material = self.typical(key, material, &mesh)?;
         let elastic = material.elastic();

@@ -3,7 +3,7 @@
 use super::spatial::{depth, spatial};
 use crate::body::{Bodies, BodySurface};
 use rayon::prelude::*;
-use signorini_contact::{FacePoint, PressureNodes};
+use signorini_contact::{FacePoint, PressureNodes, SplineFace};
 use signorini_fem::hierarchic::{Derivatives, Values};
 use signorini_fem::rules::rule;
 use signorini_fem::{CellShape, Group, Local, Side};
@@ -25,6 +25,8 @@ pub(super) struct Face<const D: usize> {
     /// Degree of the polynomial that the side is when displaced, positions of as many points, and the functions there.
     pub order: usize,
     lattice: Vec<(Point<D>, Vec<f64>)>,
+    /// The side as a span of a spline, where it is one.
+    pub spline: Option<SplineFace<D>>,
     pub depth: f64,
 }
 
@@ -57,6 +59,8 @@ pub(super) struct Surface<const D: usize> {
     pub around: HashMap<u32, Vec<u32>>,
     /// What the averaged normal at each vertex of each face is the sum of, once it is asked for.
     normals: OnceLock<Vec<Vec<Normal<D>>>>,
+    /// Whether its normal does not jump, as that of smooth splines, once it is asked for.
+    is_smooth: OnceLock<bool>,
     nodes: Tested<D>,
     gauss_points: Tested<D>,
 }
@@ -83,6 +87,9 @@ pub(super) struct Faces<const D: usize> {
 /// Cosine of the angle between faces at rest from which on they make one smooth surface: that between two sides of a
 /// regular octagon.
 pub(super) const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Difference of unit normals that is none.
+const SAME: f64 = 1e-9;
 
 /// Functions smaller than this at a point do not move it: rounding of their values, which are about one.
 pub(super) const NOTHING: f64 = 1e-14;
@@ -115,7 +122,15 @@ impl<const D: usize> Faces<D> {
             };
             let (nodes, gauss_points) = (tested(nodes), tested(gauss_points));
             out.by_group.insert(name.clone(), out.surfaces.len());
-            out.surfaces.push(Surface { faces, boundary, around, normals: OnceLock::new(), nodes, gauss_points });
+            out.surfaces.push(Surface {
+                faces,
+                boundary,
+                around,
+                normals: OnceLock::new(),
+                is_smooth: OnceLock::new(),
+                nodes,
+                gauss_points,
+            });
         }
         out
     }
@@ -207,6 +222,26 @@ impl<const D: usize> Faces<D> {
                 vertices.map(|k| self.averaged_at_vertex(*face, k, &surface.around)).collect()
             };
             surface.faces.par_iter().map(of).collect()
+        })
+    }
+
+    /// Whether a surface of splines has the same normal on all faces that meet: at rest, and then wherever it goes.
+    pub fn is_smooth(&self, surface: &Surface<D>) -> bool {
+        let normal = |f: u32, k: usize| {
+            let shape = self.face(f).shape;
+            self.reference(f, &shape.vertices()[k]).area_normal().normalize()
+        };
+        let agrees = |v: &u32, faces: &Vec<u32>| {
+            let normals = faces.iter().filter_map(|&f| {
+                let place = self.face(f).vertices.iter().position(|w| w == v)?;
+                Some(normal(f, place))
+            });
+            let list: Vec<Point<D>> = normals.collect();
+            list.iter().all(|n| (n - list[0]).norm() < SAME)
+        };
+        *surface.is_smooth.get_or_init(|| {
+            surface.faces.iter().all(|f| self.face(*f).spline.is_some())
+                && surface.around.iter().all(|(v, faces)| agrees(v, faces))
         })
     }
 
@@ -311,8 +346,11 @@ impl<const D: usize> Faces<D> {
         let mut points: Vec<(usize, Vec<(u32, Local)>)> = vec![(0, Vec::new()); nodes.len()];
         for (place, &face) in surface.faces.iter().enumerate() {
             let own = nodes.of_face(place);
-            for ((node, _), s) in own.iter().zip(nodes.map(place).nodes()) {
+            for (k, ((node, _), s)) in own.iter().zip(nodes.map(place).nodes()).enumerate() {
                 let (first, at) = &mut points[*node as usize];
+                if !nodes.lies_on(place, k) && nodes.places()[*node as usize].0 != place {
+                    continue;
+                }
                 if at.is_empty() {
                     *first = place;
                 }
@@ -482,7 +520,8 @@ impl<const D: usize> Face<D> {
             })
             .collect();
         let vertices = body.mesh.side_vertices(side);
-        Face { side, shape, vertices, places, functions, order, lattice, depth: depth(bodies, side) }
+        let spline = body.spline_face(side);
+        Face { spline, side, shape, vertices, places, functions, order, lattice, depth: depth(bodies, side) }
     }
 }
 

@@ -38,7 +38,7 @@ impl<const D: usize> SolidBody<D> {
         let mut wanted = project(body, &group, &at);
         let coupled = self.between(&group, &at, &mut all, &mut wanted);
         let mut is_vertex = vec![false; body.dofs.count()];
-        body.vertex_unknowns().for_each(|k| is_vertex[k / D] = true);
+        body.unity_unknowns().for_each(|k| is_vertex[k / D] = true);
         // The functions of the vertices add up to one: forces on them make the resultant.
         let reaction =
             |f: u32, along: Vector<3>| [along * f64::from(u8::from(is_vertex[f as usize])), Vector::<3>::zeros()];
@@ -142,6 +142,9 @@ impl<const D: usize> SolidBody<D> {
 /// Coefficients of the reference position: the vertices, and on cells with curved edges what fits edges and sides best.
 pub(super) fn position<const D: usize>(bodies: &Bodies<D>) -> Vec<Point<D>> {
     let body = &bodies.list[0];
+    if body.dofs.is_spline() {
+        return body.function_positions();
+    }
     let mut out = vec![Point::<D>::zeros(); body.dofs.count()];
     for (node, x) in body.mesh.nodes().iter().enumerate() {
         if let Some(f) = body.dofs.vertex(node as u32) {

@@ -10,7 +10,7 @@ use super::faces::{Face, Faces, Surface};
 use super::spatial::spatial;
 use rayon::prelude::*;
 use signorini_fem::hierarchic::Derivatives;
-use signorini_fem::{CellShape, Local};
+use signorini_fem::{CellShape, Local, RationalBasis};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
 use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
@@ -54,7 +54,10 @@ impl<const D: usize> Faces<D> {
     /// Faces that make no shape.
     pub fn master<'a>(&'a self, group: &str, u: &'a [f64]) -> Result<SurfaceMaster<'a, D>, ShapeError> {
         let surface = self.surface(group);
-        let shape = |f: &u32| shape(self.face(*f), &self.lattice(*f, u));
+        let shape = |f: &u32| match &self.face(*f).spline {
+            Some(spline) => shape(self.face(*f), &spline.moved(u).iter().map(spatial).collect::<Vec<_>>()),
+            None => shape(self.face(*f), &self.lattice(*f, u)),
+        };
         let shapes: Vec<Shape> = surface.faces.par_iter().map(shape).collect::<Result<_, _>>()?;
         let boxes: Vec<Aabb<3>> = shapes.iter().map(Shape::bounds).collect();
         let size = shapes.iter().map(Shape::size).fold(0.0, f64::max);
@@ -284,7 +287,7 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
     }
 
     fn is_faceted(&self) -> bool {
-        true
+        !self.faces.is_smooth(self.surface)
     }
 
     fn cut(&self, x: &Point<3>, direction: &Vector<3>, reach: f64) -> Option<MasterProjection> {
@@ -372,6 +375,9 @@ fn coordinates(found: &Projection) -> Local {
 
 /// A face as a shape of `geometry`, with the same coordinates.
 fn shape<const D: usize>(face: &Face<D>, points: &[Point<3>]) -> Result<Shape, ShapeError> {
+    if let Some(basis) = face.spline.as_ref().and_then(|spline| spline.map.rational()) {
+        return span(basis, points);
+    }
     Ok(match face.shape {
         CellShape::Line => Curve::lagrange(points)?.into(),
         CellShape::Triangle => signorini_geometry::shape::Surface::lagrange_triangle(points)?.into(),
@@ -380,4 +386,22 @@ fn shape<const D: usize>(face: &Face<D>, points: &[Point<3>]) -> Result<Shape, S
             signorini_geometry::shape::Surface::lagrange_quad(&grid)?.into()
         }
     })
+}
+
+/// A span of a spline with these control points, as a rational Bézier shape over the coordinates of the face.
+fn span(basis: &RationalBasis, points: &[Point<3>]) -> Result<Shape, ShapeError> {
+    let p = basis.degree();
+    let knots: Vec<f64> = [vec![-1.0; p + 1], vec![1.0; p + 1]].concat();
+    let values: Vec<[f64; 3]> = points.iter().map(|x| [x[0], x[1], x[2]]).collect();
+    let (points, weights) = basis.bezier(&values);
+    let points: Vec<Point<3>> = points.into_iter().map(Point::<3>::from).collect();
+    if basis.shape() == CellShape::Line {
+        return Ok(Curve::nurbs(p, &knots, &points, Some(&weights), false)?.into());
+    }
+    let row = |i: usize| (0..=p).map(move |j| i + j * (p + 1));
+    let grid: Vec<Vec<Point<3>>> = (0..=p).map(|i| row(i).map(|k| points[k]).collect()).collect();
+    let weights: Vec<Vec<f64>> = (0..=p).map(|i| row(i).map(|k| weights[k]).collect()).collect();
+    let surface =
+        signorini_geometry::shape::Surface::nurbs([p; 2], [&knots, &knots], &grid, Some(&weights), [false; 2])?;
+    Ok(surface.into())
 }

@@ -1,5 +1,7 @@
 //! The functions of a group, and the coefficients of a field on it: at vertices its values, on edges and sides the best fit.
 
+mod spline;
+
 use crate::body::Body;
 use nalgebra::DMatrix;
 use signorini_contact::FacePoint;
@@ -35,6 +37,9 @@ pub(super) fn project<const D: usize>(
     group: &Group,
     displacement: &dyn Fn(&Point<D>) -> Point<D>,
 ) -> BTreeMap<u32, Point<D>> {
+    if body.dofs.is_spline() {
+        return spline::project(body, group, displacement);
+    }
     let mut out: BTreeMap<u32, Point<D>> = BTreeMap::new();
     let mut scale = 0.0f64;
     for v in vertices(body, group) {

@@ -2,6 +2,7 @@
 
 mod elasticity;
 mod nodes;
+mod nurbs;
 mod pressed;
 mod pressure;
 mod punch;

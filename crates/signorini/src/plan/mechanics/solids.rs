@@ -50,7 +50,8 @@ impl Planner<'_> {
         let pieces = Pieces::new(name, &mesh);
         let mut groups = mesh.groups().clone();
         let mut mesh = mesh;
-        if self.halves {
+        // The spans of splines are halved where their mesh is made.
+        if self.halves && !mesh.is_spline() {
             let halved = Halved::new(&mesh);
             groups.values_mut().for_each(|group| *group = halved.group(group));
             mesh = halved.mesh;

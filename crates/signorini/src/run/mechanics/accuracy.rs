@@ -54,7 +54,11 @@ fn finer(problem: &Problem) -> Option<Finer> {
         let (degree, usual) = match body {
             Body::Solid(solid) => {
                 let of_box = matches!(solid.mesh, SolidMesh::Box(_)).then_some(1);
-                is_straight &= matches!(&solid.mesh, SolidMesh::Box(b) if b.map.is_none());
+                is_straight &= match &solid.mesh {
+                    SolidMesh::Box(b) => b.map.is_none(),
+                    // Splines keep their shape whatever their degree.
+                    mesh => matches!(mesh, SolidMesh::Nurbs(_)),
+                };
                 (&mut solid.degree, of_box)
             }
             Body::Cells(cells) => {

@@ -31,6 +31,9 @@ mod saved;
 mod shown;
 mod small;
 mod terms;
+mod tie;
+
+pub use tie::{Tie, TieFindings};
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact_law::{ContactLaw, PointHistory, PointMeasure};

@@ -15,6 +15,7 @@
 mod cohesion;
 mod compliance;
 mod coulomb;
+mod tied;
 mod tresca;
 mod viscous;
 mod wear;
@@ -22,6 +23,7 @@ mod wear;
 pub use cohesion::{Cohesion, CohesionKeys, Softening};
 pub use compliance::{Compliance, Rough};
 pub use coulomb::Coulomb;
+pub use tied::Tied;
 pub use tresca::Tresca;
 pub use viscous::Viscous;
 pub use wear::Worn;
@@ -123,6 +125,11 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// The largest traction against opening, and that along the surface without pressure.
     fn strength(&self) -> [f64; 2] {
         [0.0; 2]
+    }
+
+    /// Whether it holds surfaces together for ever.
+    fn is_tied(&self) -> bool {
+        false
     }
 
     /// Whether it holds only what touches at the start.
@@ -247,6 +254,9 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     }
     fn strength(&self) -> [f64; 2] {
         (**self).strength()
+    }
+    fn is_tied(&self) -> bool {
+        (**self).is_tied()
     }
     fn is_bond(&self) -> bool {
         (**self).is_bond()

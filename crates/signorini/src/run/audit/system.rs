@@ -174,7 +174,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             law: contact.friction().map(|law| law_of(law, problem, contact.name())),
             is_small_sliding: tested.slides_little,
             carries,
-            wanted_penetration: wanted.unwrap_or(0.0),
+            wanted_penetration: wanted.or(tested.tied_overlap).unwrap_or(0.0),
             at_places: !["mortar", "discs"].contains(&tested.method),
             surfaces: surfaces(contact.law().friction.as_deref()),
         }

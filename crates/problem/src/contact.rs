@@ -115,7 +115,8 @@ pub struct ViscousFriction {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoulombFriction {
-    /// Coefficient of friction. In space two if it depends on the direction: along `axis` and across it.
+    /// Coefficient of friction; a single one may be an expression of `t`. In space two if it depends on the direction: along
+    /// `axis` and across it.
     pub mu: Components,
     /// Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along a rope
     /// or beam.

@@ -15,6 +15,7 @@
 mod cohesion;
 mod compliance;
 mod coulomb;
+mod scheduled;
 mod tied;
 mod tresca;
 mod viscous;
@@ -23,6 +24,7 @@ mod wear;
 pub use cohesion::{Cohesion, CohesionKeys, Softening};
 pub use compliance::{Compliance, Rough};
 pub use coulomb::Coulomb;
+pub use scheduled::{Schedule, Scheduled};
 pub use tied::Tied;
 pub use tresca::Tresca;
 pub use viscous::Viscous;
@@ -88,6 +90,11 @@ impl LawPoint {
 pub trait Law: std::fmt::Debug + Send + Sync {
     /// The admissible friction traction closest to the trial, under a pressure that is positive.
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction;
+
+    /// Begins an increment to a time: for laws that change with it.
+    fn begin(&mut self, time: f64) {
+        let _ = time;
+    }
 
     /// The same for laws that know the point, such as the velocity of slip `(ζ - T)/per_velocity` there.
     fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {

@@ -41,6 +41,11 @@ impl Writer<'_> {
                 if support.tied.contains(&true) {
                     let _ = writeln!(out, "tied = {:?}", &support.tied[..dimension]);
                 }
+                for (key, time) in [("from", support.from), ("until", support.until)] {
+                    if let Some(time) = time {
+                        let _ = writeln!(out, "{key} = {time:?}");
+                    }
+                }
             }
         }
         for k in (0..self.bodies.len()).filter(|k| self.bodies[*k].is_rigid).collect::<Vec<_>>() {
@@ -234,6 +239,7 @@ fn merged(supports: &[Support]) -> Vec<Support> {
     for support in supports {
         let fits = |other: &&mut Support| {
             other.on == support.on
+                && (other.from, other.until) == (support.from, support.until)
                 && (0..3).all(|k| other.displacement[k].is_none() || support.displacement[k].is_none())
                 && (0..3).all(|k| !(other.tied[k] && support.displacement[k].is_some()))
                 && (0..3).all(|k| !(support.tied[k] && other.displacement[k].is_some()))

@@ -56,6 +56,10 @@ impl SystemAudit {
         step: &StepReport,
     ) -> Vec<Finding> {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
+        // Coefficients of friction may change with time.
+        for (told, contact) in setting.contacts.iter_mut().zip(&plan.system.contacts) {
+            told.law = contact.friction().map(|law| law_of(law, &plan.head.problem, contact.name()));
+        }
         let bodies = placements(plan, setting, &state.bodies);
         let contacts: Vec<Vec<Touch>> = result.sites.iter().map(|sites| sites.iter().map(touch).collect()).collect();
         let before = self.before.take();

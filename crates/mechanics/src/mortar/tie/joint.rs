@@ -190,8 +190,10 @@ impl Bends {
                 let own: Vec<(u32, Vector<3>)> =
                     (0..3).filter_map(|i| Some((unknowns[i]?, crate::pair::axis(i)))).collect();
                 let mut block = Vec::with_capacity(own.len() * own.len());
+                // Symmetric in spins, as those of all forces that have a potential.
                 for (_, a) in &own {
-                    block.extend(own.iter().map(|(_, b)| lambda.dot(&a.cross(&b.cross(arm)))));
+                    let both = |b: &Vector<3>| a.cross(&b.cross(arm)) + b.cross(&a.cross(arm));
+                    block.extend(own.iter().map(|(_, b)| 0.5 * lambda.dot(&both(b))));
                 }
                 (own.iter().map(|o| o.0).collect(), block)
             }

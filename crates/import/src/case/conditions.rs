@@ -66,7 +66,10 @@ impl Writer<'_> {
                 LoadKind::BodyForce(f) => format!("body_force = {}", self.values.vector(f, dimension)),
                 LoadKind::Pressure(p) => format!("pressure = {}", self.values.value(p)),
             };
-            let places = self.places(&load.on)?;
+            let places = match &load.kind {
+                LoadKind::NodalForce(_) if self.bodies.iter().any(|b| b.is_split) => self.places_once(&load.on)?,
+                _ => self.places(&load.on)?,
+            };
             let several = places.len() > 1;
             for on in places {
                 let body = &self.bodies[on.body];
@@ -104,6 +107,26 @@ impl Writer<'_> {
                 let name = &self.bodies[body].name;
                 let text = group.map_or_else(|| name.clone(), |group| format!("{name}:{group}"));
                 out.push(On { body, text });
+            }
+        }
+        Ok(out)
+    }
+
+    /// The same of nodes, each in the first body that has it.
+    fn places_once(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
+        let (name, nodes) = match place {
+            Place::NodeSet(name) => match self.deck.node_sets.get(name) {
+                Some((name, nodes)) => (name.to_string(), nodes.clone()),
+                None => return self.places(place),
+            },
+            Place::Nodes(name, nodes) => (name.clone(), nodes.clone()),
+            _ => return self.places(place),
+        };
+        let mut out = Vec::new();
+        for body in 0..self.bodies.len() {
+            let own = Place::Nodes(name.clone(), self.nodes_of_its_own(body, &nodes));
+            if let Some(Some(group)) = self.group(&own, body)? {
+                out.push(On { body, text: format!("{}:{group}", self.bodies[body].name) });
             }
         }
         Ok(out)

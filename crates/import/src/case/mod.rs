@@ -6,6 +6,7 @@
 mod bodies;
 mod conditions;
 mod contacts;
+mod interfaces;
 mod material;
 mod names;
 mod values;
@@ -21,7 +22,7 @@ use values::Values;
 /// The case of a deck, as TOML. `file` is the path of the deck from the folder of the case.
 ///
 /// # Errors
-/// What the deck states and a case cannot: parts of several materials, tied surfaces, conditions on nothing.
+/// What the deck states and a case cannot: materials without a law, conditions on nothing.
 pub fn text(deck: &Deck, file: &str) -> Result<String, ImportError> {
     Writer::new(deck, file)?.text()
 }
@@ -63,6 +64,7 @@ impl<'a> Writer<'a> {
         let supports = self.supports()?;
         let loads = self.loads()?;
         let contacts = self.contacts()?;
+        let interfaces = self.interfaces();
         let bodies = self.body_tables();
         let deck = self.deck;
         let mut out = String::new();
@@ -81,6 +83,7 @@ impl<'a> Writer<'a> {
         out.push_str(&supports);
         out.push_str(&loads);
         out.push_str(&contacts);
+        out.push_str(&interfaces);
         for step in &deck.steps {
             let _ = writeln!(out, "\n[[steps]]\nto = {:?}\nincrements = {}", step.to, step.increments);
         }

@@ -290,6 +290,8 @@ pub struct Deck {
     /// Motions of rigid parts, by the name of their material.
     pub rigid: Sets<RigidMotion>,
     pub contacts: Vec<ContactPair>,
+    /// Nodes that move with a rigid part that turns or is pushed, and the name of its material.
+    pub carried: Vec<(Place, String)>,
     pub adjustments: Vec<Adjustment>,
     pub supports: Vec<Support>,
     pub loads: Vec<Load>,

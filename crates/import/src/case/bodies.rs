@@ -23,6 +23,9 @@ pub(super) struct Body {
     pub(super) is_rigid: bool,
     /// Whether it shares nodes with other bodies, of other materials.
     pub(super) is_split: bool,
+    /// Whether it is rigid and does not turn, and is a solid that is held everywhere: it is then touched on the surfaces that
+    /// the deck states, and not on all of its boundary.
+    pub(super) is_held: bool,
     /// Of a rigid body that is touched on a flat surface: a point of it and the outward normal.
     pub(super) plane: Option<[[f64; 3]; 2]>,
     /// Groups of nodes and faces that supports and loads need.
@@ -61,6 +64,15 @@ pub(super) fn plane(deck: &Deck, body: &Body) -> Option<[[f64; 3]; 2]> {
         normal = -normal;
     }
     Some([a.into(), (normal + Point::<3>::zeros()).into()])
+}
+
+/// Whether a rigid body moves as prescribed without turning.
+pub(super) fn is_moved(deck: &Deck, body: &Body) -> bool {
+    let Some((_, motion)) = deck.rigid.get(&body.material) else { return true };
+    let dimension = deck.space().dimension();
+    let turns: &[usize] = if dimension == 3 { &[3, 4, 5] } else { &[5] };
+    let rests = |c: &usize| motion.components[*c].as_ref().and_then(|c| c.as_constant()) == Some(0.0);
+    turns.iter().all(rests) && motion.components[..dimension].iter().all(Option::is_some)
 }
 
 /// The bodies of a deck, in the order of their first elements.
@@ -136,6 +148,7 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
             connected_to: (group.is_none() && parts.len() > 1).then_some(first_node),
             is_split: *is_split,
             is_rigid: law == Law::Rigid,
+            is_held: false,
             plane: None,
             law,
             material: deck.sections[*first].material.clone(),

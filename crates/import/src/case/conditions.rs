@@ -8,9 +8,9 @@ use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
 
 /// The part of a body on which something acts: its name in the case.
-struct On {
-    body: usize,
-    text: String,
+pub(super) struct On {
+    pub(super) body: usize,
+    pub(super) text: String,
 }
 
 impl Writer<'_> {
@@ -100,7 +100,7 @@ impl Writer<'_> {
 
     /// The bodies that a place touches, with the name of that part. Groups that the mesh of a body does not have by itself are
     /// added to it.
-    fn places(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
+    pub(super) fn places(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
         let mut out = Vec::new();
         for body in 0..self.bodies.len() {
             if let Some(group) = self.group(place, body)? {
@@ -225,7 +225,21 @@ impl Writer<'_> {
     fn rigid_support(&mut self, k: usize, names: &mut Names) -> String {
         let used = self.rigid_components();
         let name = self.bodies[k].name.clone();
-        let Some((_, motion)) = self.deck.rigid.get(&self.bodies[k].material) else { return String::new() };
+        let rests = RigidMotion::default();
+        let motion = match self.deck.rigid.get(&self.bodies[k].material) {
+            Some((_, motion)) => motion,
+            None if self.bodies[k].is_held => &rests,
+            None => return String::new(),
+        };
+        if self.bodies[k].is_held {
+            let dimension = self.deck.space().dimension();
+            let list: Vec<String> = motion.components[..dimension]
+                .iter()
+                .map(|c| self.values.value(c.as_ref().unwrap_or(&Curve::constant(0.0))))
+                .collect();
+            let displacement = list.join(", ");
+            return format!("\n[supports.{}]\non = \"{name}\"\ndisplacement = [{displacement}]\n", names.take(&name));
+        }
         if !moves_freely(&used, motion) || used.iter().all(|c| motion.components[*c].is_none()) {
             return String::new();
         }

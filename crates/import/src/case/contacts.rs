@@ -3,12 +3,15 @@
 use super::{Names, Writer, quoted};
 use crate::ImportError;
 use crate::deck::{Friction, Surface};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 impl Writer<'_> {
     /// The tables of all contacts.
     pub(super) fn contacts(&mut self) -> Result<String, ImportError> {
         let mut names = Names::default();
+        // Bodies that touch themselves do so with all of their surface.
+        let mut selves = BTreeSet::new();
         let mut out = String::new();
         for pair in &self.deck.contacts {
             let wrong = |message: String| ImportError::new(&self.deck.file, pair.line, message);
@@ -53,7 +56,7 @@ impl Writer<'_> {
                     let [own, other] = [a, b].map(|k| &self.bodies[*k]);
                     let part = |k: usize, group: &str| {
                         let body = &self.bodies[k];
-                        if body.is_rigid { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
+                        if body.is_rigid && !body.is_held { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
                     };
                     if own.is_rigid && other.is_rigid {
                         remarks.push(format!(
@@ -66,6 +69,12 @@ impl Writer<'_> {
                         remarks.push(format!("the tie of `{slave}` with `{master}` within `{}` is left out", own.name));
                         continue;
                     }
+                    // What is held everywhere is touched by what deforms.
+                    let ((a, slave), (b, master)) =
+                        if own.is_held { ((b, &master), (a, &slave)) } else { ((a, &slave), (b, &master)) };
+                    if a == b && !selves.insert(*a) {
+                        continue;
+                    }
                     let between = if a == b {
                         remarks.push(format!(
                             "the contact of `{slave}` with `{master}` is self-contact of all of `{}`",
@@ -73,7 +82,7 @@ impl Writer<'_> {
                         ));
                         format!("self_contact = {}", quoted(&own.name))
                     } else {
-                        format!("between = [{}, {}]", part(*a, &slave), part(*b, &master))
+                        format!("between = [{}, {}]", part(*a, slave), part(*b, master))
                     };
                     let name = names.take(&pair.name);
                     let _ = writeln!(out, "\n[contacts.{name}]\n{between}\n{friction}");

@@ -1,6 +1,7 @@
 //! Ties between bodies of different materials that share nodes in the deck.
 
 use super::{Names, Writer, quoted};
+use crate::ImportError;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -28,6 +29,36 @@ impl Writer<'_> {
             self.remark(format!("`{first}` and `{second}` share nodes and have different materials: they are tied"));
         }
         out
+    }
+
+    /// The ties of nodes to rigid bodies that turn or are pushed.
+    ///
+    /// # Errors
+    /// Sets or rigid bodies that do not exist.
+    pub(super) fn carried(&mut self) -> Result<String, ImportError> {
+        let mut names = Names::default();
+        let mut out = String::new();
+        let lengths = |i: usize| self.deck.nodes.values().map(move |x| x[i]);
+        let extent = |i: usize| lengths(i).fold(f64::MIN, f64::max) - lengths(i).fold(f64::MAX, f64::min);
+        // Nodes are carried wherever they are.
+        let far = (0..3).map(extent).fold(0.0, f64::max) * 10.0;
+        for (place, material) in &self.deck.carried {
+            let rigid = self.bodies.iter().find(|b| b.is_rigid && b.material.eq_ignore_ascii_case(material));
+            let Some(rigid) = rigid.map(|b| b.name.clone()) else {
+                let message = format!("there is no rigid body of the material `{material}` that carries nodes");
+                return Err(ImportError::new(&self.deck.file, None, message));
+            };
+            for on in self.places(place)?.into_iter().filter(|on| !self.bodies[on.body].is_rigid) {
+                let name = names.take(&format!("{}_{rigid}_carried", self.bodies[on.body].name));
+                let _ = writeln!(
+                    out,
+                    "\n[contacts.{name}]\nbetween = [{}, {}]\ntied = true\ntie_distance = {far:?}\nmethod.node = {{}}",
+                    quoted(&on.text),
+                    quoted(&rigid)
+                );
+            }
+        }
+        Ok(out)
     }
 
     fn shared_faces(&mut self) -> Vec<Interface> {

@@ -43,6 +43,7 @@ impl<'a> Writer<'a> {
         let mut bodies = bodies(deck)?;
         for body in bodies.iter_mut().filter(|b| b.is_rigid) {
             body.plane = bodies::plane(deck, body);
+            body.is_held = body.plane.is_none() && bodies::is_moved(deck, body);
         }
         for adjustment in &deck.adjustments {
             let Some((_, surface)) = deck.surfaces.get(&adjustment.surface) else { continue };
@@ -64,7 +65,7 @@ impl<'a> Writer<'a> {
         let supports = self.supports()?;
         let loads = self.loads()?;
         let contacts = self.contacts()?;
-        let interfaces = self.interfaces();
+        let interfaces = self.interfaces() + &self.carried()?;
         let bodies = self.body_tables();
         let deck = self.deck;
         let mut out = String::new();
@@ -94,10 +95,18 @@ impl<'a> Writer<'a> {
     fn body_tables(&mut self) -> String {
         let mut out = String::new();
         for k in 0..self.bodies.len() {
-            let kind = if self.bodies[k].is_rigid { "rigid" } else { "solid" };
+            let is_held = self.bodies[k].is_held;
+            let kind = if self.bodies[k].is_rigid && !is_held { "rigid" } else { "solid" };
             let body = &self.bodies[k];
             let _ = writeln!(out, "\n[bodies.{}.{kind}]", body.name);
-            if body.is_rigid {
+            if is_held {
+                out.push_str("material.linear_elastic = { youngs_modulus = 1.0, poissons_ratio = 0.0 }\n");
+                let message = format!(
+                    "the rigid body `{}`, which does not turn, is a solid that is held everywhere",
+                    body.name
+                );
+                self.remark(message);
+            } else if body.is_rigid {
                 out.push_str(&self.motion(k));
             } else {
                 let hyperelastic = material::needs_finite_strain(&body.law);
@@ -117,7 +126,7 @@ impl<'a> Writer<'a> {
                 self.remark(message);
                 continue;
             }
-            let key = if body.is_rigid { "shape.file" } else { "mesh.file" };
+            let key = if body.is_rigid && !is_held { "shape.file" } else { "mesh.file" };
             let _ = writeln!(out, "\n[bodies.{}.{kind}.{key}]\nfile = {}", body.name, quoted(self.file));
             if let Some(group) = &body.group {
                 let _ = writeln!(out, "group = {}", quoted(group));

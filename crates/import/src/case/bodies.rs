@@ -96,9 +96,8 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
         let section = &deck.sections[s];
         let none = || wrong(Some(section.line), format!("there is no material `{}`", section.material));
         let (_, material) = deck.materials.get(&section.material).ok_or_else(none)?;
-        let none = || {
-            wrong(Some(material.line), format!("the material `{}` has no law that is known here", section.material))
-        };
+        let none =
+            || wrong(Some(material.line), format!("the material `{}` has no law that is known here", section.material));
         material.law.clone().ok_or_else(none)
     };
     // Connected parts; those of several materials by section, which share nodes then.

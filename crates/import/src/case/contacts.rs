@@ -56,7 +56,11 @@ impl Writer<'_> {
                     let [own, other] = [a, b].map(|k| &self.bodies[*k]);
                     let part = |k: usize, group: &str| {
                         let body = &self.bodies[k];
-                        if body.is_rigid && !body.is_held { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
+                        if body.is_rigid && !body.is_held {
+                            quoted(&body.name)
+                        } else {
+                            quoted(&format!("{}:{group}", body.name))
+                        }
                     };
                     if own.is_rigid && other.is_rigid {
                         remarks.push(format!(

@@ -75,7 +75,9 @@ impl Writer<'_> {
                     continue;
                 }
                 let mut groups = [None, None];
-                for ((own, other), (faces, group)) in [(a, b), (b, a)].into_iter().zip(faces.into_iter().zip(&mut groups)) {
+                for ((own, other), (faces, group)) in
+                    [(a, b), (b, a)].into_iter().zip(faces.into_iter().zip(&mut groups))
+                {
                     if self.bodies[own].is_rigid {
                         continue;
                     }

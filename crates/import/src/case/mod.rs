@@ -101,10 +101,8 @@ impl<'a> Writer<'a> {
             let _ = writeln!(out, "\n[bodies.{}.{kind}]", body.name);
             if is_held {
                 out.push_str("material.linear_elastic = { youngs_modulus = 1.0, poissons_ratio = 0.0 }\n");
-                let message = format!(
-                    "the rigid body `{}`, which does not turn, is a solid that is held everywhere",
-                    body.name
-                );
+                let message =
+                    format!("the rigid body `{}`, which does not turn, is a solid that is held everywhere", body.name);
                 self.remark(message);
             } else if body.is_rigid {
                 out.push_str(&self.motion(k));

@@ -27,10 +27,8 @@ impl Model {
             match stated.filter(|k| kind == "LINEAR" && *k > 0.0) {
                 Some(value) => interaction.stiffness = Some(Stiffness { value, line: card.line }),
                 None => {
-                    let message = format!(
-                        "*{}, {kind}: its stiffness is left out; here surfaces do not penetrate",
-                        card.keyword
-                    );
+                    let message =
+                        format!("*{}, {kind}: its stiffness is left out; here surfaces do not penetrate", card.keyword);
                     self.deck.remark(card.line, message);
                 }
             }

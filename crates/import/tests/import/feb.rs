@@ -125,7 +125,10 @@ fn tied_and_sticky_contacts() {
         deck("tied.feb", &version_4(&materials, &text)).unwrap().contacts[0].friction.clone()
     };
     assert_eq!(contact("tied-elastic", ""), Friction::Tied { within: None });
-    assert_eq!(contact("tied-facet-on-facet", "<max_distance>0.5</max_distance>"), Friction::Tied { within: Some(0.5) });
+    assert_eq!(
+        contact("tied-facet-on-facet", "<max_distance>0.5</max_distance>"),
+        Friction::Tied { within: Some(0.5) }
+    );
     assert_eq!(contact("sticky", "<penalty>4</penalty>"), Friction::Tied { within: None });
     let sticky = contact("sticky", "<penalty>4</penalty><max_traction>2</max_traction>");
     assert_eq!(sticky, Friction::Sticky { strength: 2.0, opening: 0.5 });

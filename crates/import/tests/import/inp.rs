@@ -247,6 +247,9 @@ fn ties_and_bodies_of_two_materials_are_tied() {
     ] {
         assert!(tables.iter().any(|t| t.trim() == table), "`{table}` is not in\n{written}");
     }
-    assert!(written.contains("sides.\"to Below\" = [\"1 1\"]") && written.contains("sides.\"to First\" = [\"3 2\"]"), "{written}");
+    assert!(
+        written.contains("sides.\"to Below\" = [\"1 1\"]") && written.contains("sides.\"to First\" = [\"3 2\"]"),
+        "{written}"
+    );
     assert_eq!(written.matches("nodal_force").count(), 1, "{written}");
 }

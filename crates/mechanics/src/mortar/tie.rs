@@ -157,7 +157,8 @@ impl Tie {
         }
         out.find(&start, TOUCHES * body_size, None);
         if out.joints.is_empty() {
-            let nearest = out.findings.nearest.map_or(String::new(), |d| format!(", the nearest point is {d:.4e} away"));
+            let nearest =
+                out.findings.nearest.map_or(String::new(), |d| format!(", the nearest point is {d:.4e} away"));
             let message = format!("nothing of it faces the other side within {within:.4e}{nearest}");
             return Err(unsuitable(slave.1, &message));
         }
@@ -332,14 +333,8 @@ impl<'a> Start<'a> {
             }
         };
         let shares = vec![vec![(k as u32, site.weight)]];
-        let mut joint = Joint {
-            slave: SlaveAt::Site(k),
-            master,
-            offset: Vector::<3>::zeros(),
-            normal,
-            is_flipped: false,
-            shares,
-        };
+        let mut joint =
+            Joint { slave: SlaveAt::Site(k), master, offset: Vector::<3>::zeros(), normal, is_flipped: false, shares };
         if let MasterAt::Material(point) = master {
             let at = MasterPoint::of_anchor(self.met.at(&point));
             joint.begin_at(&placed.x, &at, touches).then_some(())?;

@@ -79,7 +79,7 @@ impl Tie {
             (MasterAt::Rigid(point), _) => {
                 joint.measure_on_rigid(&slave, &sides.master.at(&point), self.rigid, sides.first)
             }
-            (MasterAt::Material(point) , _) => {
+            (MasterAt::Material(point), _) => {
                 joint.measure(&slave, &MasterPoint::of_anchor(sides.master.at(&point)), sides.first)
             }
             (MasterAt::Face(..), None) => Measured::default(),
@@ -285,9 +285,8 @@ impl Interaction for Tie {
         let found = self.found(at, true)?;
         let linearises = out.tangent.is_some();
         let tractions = self.tractions(own.multipliers);
-        let projected: Vec<Projected> = (0..self.weight.len())
-            .map(|k| self.node_traction(&found, k, own.multipliers, linearises))
-            .collect();
+        let projected: Vec<Projected> =
+            (0..self.weight.len()).map(|k| self.node_traction(&found, k, own.multipliers, linearises)).collect();
         let slots = self.law.slots().len() as u32;
         for (k, projected) in projected.iter().enumerate() {
             let row = own.first + k as u32 * slots;
@@ -422,8 +421,7 @@ impl Iterated for Tie {
         let other = at.bodies[master.body].as_ref();
         let other_state = other.start();
         let Ok(met) = other.master(master.group.as_deref(), &other_state) else { return };
-        let start =
-            Start { slave: (&slave, body, &state), master: (&master, other, &other_state), met: met.as_ref() };
+        let start = Start { slave: (&slave, body, &state), master: (&master, other, &other_state), met: met.as_ref() };
         let size = body.size().max(if other.is_rigid() { 0.0 } else { other.size() });
         self.find(&start, TOUCHES * size, Some(&flags));
     }

@@ -134,7 +134,10 @@ impl Planner<'_> {
             return Err(self.problem.error(at, message).help("leave `from` and `until` out"));
         }
         if key.spring.is_some() {
-            return Err(self.problem.error(at, "springs hold at all times").help("state them in a support of their own"));
+            return Err(self
+                .problem
+                .error(at, "springs hold at all times")
+                .help("state them in a support of their own"));
         }
         match (from, until) {
             (Some(from), Some(until)) if from >= until => {

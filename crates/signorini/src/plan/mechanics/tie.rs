@@ -33,8 +33,13 @@ impl Planner<'_> {
         let fits = |part: &&Part| matches!(kinds[part.body], Kind::Solid | Kind::Cells | Kind::Rigid { .. });
         let body = |part: &Part| system.bodies[part.body].as_ref();
         if let Some(part) = [slave, master].into_iter().find(|part| !fits(part)) {
-            let message = format!("`{}` is a rope or beam: ties are for solids, finite cells and rigid bodies", body(part).name());
-            return Err(problem.error(key, message).help("a support or load of the same place, or friction of a high limit"));
+            let message = format!(
+                "`{}` is a rope or beam: ties are for solids, finite cells and rigid bodies",
+                body(part).name()
+            );
+            return Err(problem
+                .error(key, message)
+                .help("a support or load of the same place, or friction of a high limit"));
         }
         if is_rigid(slave) || slave.body == master.body {
             let message = match is_rigid(slave) {

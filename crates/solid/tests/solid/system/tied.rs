@@ -87,8 +87,7 @@ fn a_rigid_body_hangs_on_its_tie() {
     let centre = Point::<3>::new(0.5, 0.5, 1.4);
     let shape = Sphere { center: centre, radius: 0.4 };
     let motion = Motion::Free { plane: false };
-    let ball =
-        RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 0.8 };
+    let ball = RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 0.8 };
     system.bodies.push(Box::new(ball));
     system.contacts.push(Box::new(tie(&system, (0, "top"), (1, ""), Test::Mortar(0), Some(0.3))));
     system.supports.push(hold(0, "bottom", [Some(0.0); 3]));
@@ -96,7 +95,8 @@ fn a_rigid_body_hangs_on_its_tie() {
     system.loads.push(load(1, "", TimedLoad::Force(Arc::new(move |_, _| pull))));
     let (state, results) = run(&mut system, &[1.0]);
     let sites = &results[0].sites[0];
-    let [force, moment] = sites.iter().fold([Vector::<3>::zeros(); 2], |[f, m], s| [f + s.force(), m + s.x.cross(&s.force())]);
+    let [force, moment] =
+        sites.iter().fold([Vector::<3>::zeros(); 2], |[f, m], s| [f + s.force(), m + s.x.cross(&s.force())]);
     let now = &state.bodies[1].configuration;
     let arm = v(now[0], now[1], now[2]);
     assert!((arm - centre).norm() > 0.01, "the ball moved to {arm}");
@@ -109,12 +109,14 @@ fn tangents_of_ties_are_exact() {
     let seed = &mut 11u64;
     for rigid in [false, true] {
         let mut system = stack(&StressLaw::LinearElastic, 0.05, [1, 1]);
-        system.bodies[1] = Box::new(solid("upper", cuboid([0.01, 0.0, 1.05], [0.8, 1.0, 2.0], [1; 3], |x| x), 1, ELASTIC, FINITE));
+        system.bodies[1] =
+            Box::new(solid("upper", cuboid([0.01, 0.0, 1.05], [0.8, 1.0, 2.0], [1; 3], |x| x), 1, ELASTIC, FINITE));
         if rigid {
             let centre = Point::<3>::new(0.5, 0.5, 0.5);
             let shape = Sphere { center: centre, radius: 0.5 };
             let motion = Motion::Free { plane: false };
-            let ball = RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 };
+            let ball =
+                RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 };
             system.bodies[0] = Box::new(ball);
         }
         let group = if rigid { "" } else { "top" };

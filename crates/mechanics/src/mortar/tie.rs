@@ -167,14 +167,11 @@ impl Tie {
 
     /// Finds the joints. `held` tells which nodes give their function along which axis to a neighbour.
     fn find(&mut self, start: &Start<'_>, touches: f64, held: Option<&[Vec<bool>]>) {
-        let count = self.weight.len();
-        let free = vec![vec![false; count]];
+        let (mut joints, weight, carrier) = self.joints_with(start, touches, &vec![false; self.weight.len()]);
         let mut found: Vec<(Vec<Joint>, Vec<f64>, Vec<u32>)> = Vec::new();
-        let base = self.joints_with(start, touches, &free[0]);
         for flags in held.unwrap_or_default() {
             found.push(self.joints_with(start, touches, flags));
         }
-        let (mut joints, weight, carrier) = base;
         if found.is_empty() {
             (self.carrier, self.carried) = (vec![carrier; self.dimension], vec![weight.clone(); self.dimension]);
         } else {

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 #: Hash of the schema, by which the tests in Rust know it.
 SCHEMA = '44aa361cde4f1574'
+SCHEMA = '26c000c9b09befa8'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -519,11 +520,15 @@ class Contact(Noun):
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     self_contact: The rope, beam or solid that is in contact with itself.
     sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
+    tie_distance: Distance at the start up to which surfaces are tied, a length; a tenth of the size of a face of
+        the slave if left out.
+    tied: Whether the surfaces are tied: glued in all directions for ever, where they are near each other at the
+        start. Gaps of the mesh stay as they are.
     wear: Wear of solids by Archard's law: the depth that is worn off per pressure and slip, one over a pressure.
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'wear': ('wear', 'Value')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
 
     def __init__(
         self,
@@ -537,6 +542,8 @@ class Contact(Noun):
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
         self_contact: Optional[str] = None,
         sliding: Optional[str] = None,
+        tie_distance: Optional[Value] = None,
+        tied: Optional[bool] = None,
         wear: Optional[Value] = None,
     ) -> None:
         self.adhesion = adhesion
@@ -548,13 +555,16 @@ class Contact(Noun):
         self.method = method
         self.self_contact = self_contact
         self.sliding = sliding
+        self.tie_distance = tie_distance
+        self.tied = tied
         self.wear = wear
 
 
 class CoulombFriction(Noun):
     """Coulomb friction: the limit is proportional to the pressure.
 
-    mu: Coefficient of friction. In space two if it depends on the direction: along `axis` and across it.
+    mu: Coefficient of friction; a single one may be an expression of `t`. In space two if it depends on the
+        direction: along `axis` and across it.
     axis: Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along
         a rope or beam.
     on: The side to which the axis is attached; `slave` if left out.
@@ -2530,33 +2540,40 @@ class Support(Noun):
     on: Body or group of a body: `BODY` or `BODY:GROUP`.
     displacement: Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free
         components.
+    from_: Time from which the support holds: at later times only. From the start if left out.
     normal: Prescribed displacement along the outward normal; the tangential components are free.
     rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
         components.
     spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
     tied: All points share one unknown displacement: in the components that are not prescribed, or in those that
         are true of a list such as `[false, false, true]`.
+    until: Time up to which the support holds, that time included. At later times the place is free. For ever if
+        left out.
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]')}
+    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
 
     def __init__(
         self,
         *,
         on: str,
         displacement: Optional[Value | Sequence[Value] | Array] = None,
+        from_: Optional[Value] = None,
         normal: Optional[Value] = None,
         rotation: Optional[Sequence[Value] | Array] = None,
         spring: Optional[Sequence[Value] | Array] = None,
         tied: Optional[bool | Sequence[bool] | Array] = None,
+        until: Optional[Value] = None,
     ) -> None:
         self.on = on
         self.displacement = displacement
+        self.from_ = from_
         self.normal = normal
         self.rotation = rotation
         self.spring = spring
         self.tied = tied
+        self.until = until
 
 
 class Table(Noun):

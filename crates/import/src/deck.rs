@@ -97,6 +97,9 @@ pub struct Support {
     pub displacement: [Option<Curve>; 3],
     /// Directions in which all nodes of the place have one unknown displacement.
     pub tied: [bool; 3],
+    /// Times after which, and up to which it holds; always if none.
+    pub from: Option<f64>,
+    pub until: Option<f64>,
 }
 
 /// What a load is.
@@ -124,9 +127,12 @@ pub struct Load {
 pub enum Friction {
     #[default]
     None,
-    Coulomb(f64),
-    /// The surfaces are joined.
-    Tied,
+    /// A coefficient by time.
+    Coulomb(Curve),
+    /// The surfaces are glued where they are within a distance at the start, if one is stated.
+    Tied { within: Option<f64> },
+    /// They are glued until a traction, that is reached at an opening.
+    Sticky { strength: f64, opening: f64 },
 }
 
 /// A pair of surfaces.
@@ -137,6 +143,15 @@ pub struct ContactPair {
     pub slave: String,
     pub master: String,
     pub friction: Friction,
+    /// Pressure per penetration, of a linear overclosure.
+    pub stiffness: Option<Stiffness>,
+    pub line: usize,
+}
+
+/// The stiffness of surfaces, and where it is stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    pub value: f64,
     pub line: usize,
 }
 
@@ -275,12 +290,16 @@ pub struct Deck {
     /// Motions of rigid parts, by the name of their material.
     pub rigid: Sets<RigidMotion>,
     pub contacts: Vec<ContactPair>,
+    /// Nodes that move with a rigid part that turns or is pushed, and the name of its material.
+    pub carried: Vec<(Place, String)>,
     pub adjustments: Vec<Adjustment>,
     pub supports: Vec<Support>,
     pub loads: Vec<Load>,
     pub steps: Vec<Step>,
     /// Whether strains may be finite.
     pub finite_strain: bool,
+    /// Whether linear stiffnesses of contacts are kept as compliances of the surfaces.
+    pub keeps_stiffness: bool,
     pub remarks: Vec<Remark>,
 }
 

@@ -42,12 +42,38 @@ impl System {
     /// Whether a body may move freely where no contact holds it: a rigid one, or one of small strains that neither supports
     /// nor springs hold.
     pub(crate) fn has_free_body(&self) -> bool {
-        let is_free = |k: usize| self.bodies[k].is_rigid() || (self.bodies[k].is_linear() && self.is_unheld(k));
-        (0..self.bodies.len()).any(|k| self.bodies[k].unknowns() > 0 && is_free(k))
+        let tied = self.tied_to_held();
+        let is_free = |k: usize| self.bodies[k].is_rigid() || (self.bodies[k].is_linear() && self.moves_by_itself(k));
+        (0..self.bodies.len()).any(|k| !tied[k] && self.bodies[k].unknowns() > 0 && is_free(k))
+    }
+
+    /// Which bodies ties hold to one that is held itself.
+    fn tied_to_held(&self) -> Vec<bool> {
+        let ties: Vec<[usize; 2]> = (self.contacts.iter())
+            .filter(|contact| contact.law().friction.as_ref().is_some_and(|law| law.is_tied()))
+            .map(|contact| contact.bodies())
+            .collect();
+        let mut held = vec![false; self.bodies.len()];
+        for k in ties.iter().flatten() {
+            held[*k] = !self.moves_by_itself(*k);
+        }
+        // Each pass reaches one body farther from what holds them.
+        for _ in 0..ties.len() {
+            for [a, b] in &ties {
+                let both = held[*a] || held[*b];
+                (held[*a], held[*b]) = (both, both);
+            }
+        }
+        held
     }
 
     /// Whether a body may move rigidly where no contact holds it, whatever it is like.
     pub(crate) fn is_unheld(&self, body: usize) -> bool {
+        self.moves_by_itself(body) && !self.tied_to_held()[body]
+    }
+
+    /// Whether a body may move rigidly where nothing but its supports holds it.
+    fn moves_by_itself(&self, body: usize) -> bool {
         self.bodies[body].unknowns() > 0 && matches!(self.free_motion(body), Ok(Some(_)))
     }
 

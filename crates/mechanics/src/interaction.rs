@@ -138,7 +138,9 @@ impl dyn Interaction + '_ {
 
     /// Begins an increment to a time.
     pub(crate) fn begin_increment(&mut self, time: f64) {
-        self.law_mut().times[1] = time;
+        let law = self.law_mut();
+        law.times[1] = time;
+        law.friction.iter_mut().for_each(|law| law.begin(time));
         self.begin(time);
     }
 

@@ -76,7 +76,7 @@ pub use increment_error::IncrementError;
 pub use inside::Inside;
 pub use interaction::{Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, Passing};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
-pub use mortar::Mortar;
+pub use mortar::{Mortar, Tie, TieFindings};
 pub use pair::AxisChoice;
 pub use part::Part;
 pub use points::{

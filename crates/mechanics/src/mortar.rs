@@ -33,7 +33,10 @@ mod saved;
 mod shown;
 mod small;
 mod terms;
+mod tie;
 mod within;
+
+pub use tie::{Tie, TieFindings};
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact_law::{ContactLaw, PointHistory, PointMeasure};

@@ -180,6 +180,9 @@ pub struct Anchor {
     /// A direction in the surface, of any length, that moves with the material; the slopes of the functions along the
     /// first coordinate are its changes.
     pub tangent: Vector<3>,
+    /// The derivative along the second coordinate of a surface of faces, of which `tangent` is that along the first; the
+    /// slopes of the functions along that coordinate are its changes.
+    pub across: Option<Vector<3>>,
     pub functions: Vec<Function>,
     /// What turns the section there, and how it is turned.
     pub spin: Vec<Function>,

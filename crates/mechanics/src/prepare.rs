@@ -39,7 +39,9 @@ impl System {
         let (single, _) = self.held(&start.bodies, 0.0).map_err(IncrementError::Assembly)?;
         let (first, count) = self.numbering();
         let mut held = vec![false; count];
-        single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
+        // What is free at another time may carry then.
+        let lasting = single.iter().filter(|h| self.supports[h.support].is_permanent());
+        lasting.for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
         let at = Bodies { bodies: &self.bodies, states: &start.bodies, first: &first };
         self.contacts.iter_mut().for_each(|contact| contact.leave_out_held(at, &held));
         // Slips count from the start, where nothing carries yet.

@@ -412,6 +412,7 @@ impl Master for RigidMaster<'_> {
         Anchor {
             x: self.pose.centre + frame * (own - self.body.centre),
             tangent: frame * any_tangent(&normal),
+            across: None,
             functions: Vec::new(),
             spin: Vec::new(),
             frame,

@@ -33,11 +33,28 @@ pub struct Support {
     pub along: Option<(Vector<3>, TimeField)>,
     /// Components that are the same all over the part, and free.
     pub uniform: [bool; 3],
+    /// The time after which it holds; from the start if none.
+    pub from: Option<f64>,
+    /// The last time at which it holds; for ever if none.
+    pub until: Option<f64>,
 }
 
 impl Support {
-    /// What is held at a time.
+    /// Whether it holds at all times.
+    pub(crate) fn is_permanent(&self) -> bool {
+        self.from.is_none() && self.until.is_none()
+    }
+
+    /// Whether it holds at a time.
+    fn holds_at(&self, time: f64) -> bool {
+        self.from.is_none_or(|from| time > from) && self.until.is_none_or(|until| time <= until)
+    }
+
+    /// What is held at a time: nothing where the support does not hold.
     pub(crate) fn at<T>(&self, time: f64, with: impl FnOnce(&Hold<'_>) -> T) -> T {
+        if !self.holds_at(time) {
+            return with(&Hold::default());
+        }
         let at = |field: &TimeField| {
             let field = Arc::clone(field);
             move |x: &Point<3>| field(x, time)

@@ -19,6 +19,11 @@ pub struct Contact {
     pub method: Option<Method>,
     /// Sliding of solids on each other and on rigid bodies; any distance if left out.
     pub sliding: Option<Sliding>,
+    /// Whether the surfaces are tied: glued in all directions for ever, where they are near each other at the start. Gaps of the
+    /// mesh stay as they are.
+    pub tied: Option<bool>,
+    /// Distance at the start up to which surfaces are tied, a length; a tenth of the size of a face of the slave if left out.
+    pub tie_distance: Option<Value>,
     /// Adhesion of the surfaces: they attract each other as they close and as they part.
     pub adhesion: Option<Adhesion>,
     /// Cohesion of solids: what touches at the start is bonded until the bond breaks.
@@ -110,7 +115,8 @@ pub struct ViscousFriction {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoulombFriction {
-    /// Coefficient of friction. In space two if it depends on the direction: along `axis` and across it.
+    /// Coefficient of friction; a single one may be an expression of `t`. In space two if it depends on the direction: along
+    /// `axis` and across it.
     pub mu: Components,
     /// Direction of the first of two coefficients, projected on the surface. `"tangent"` is the direction along a rope
     /// or beam.

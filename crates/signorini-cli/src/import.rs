@@ -3,15 +3,15 @@
 use crate::commands::{DONE, report};
 use crate::console::{self, say};
 use serde_json::json;
-use signorini::import::{case, read};
+use signorini::import::{Deck, case, read};
 use signorini::output::atomic;
 use signorini::problem::CaseError;
 use std::path::{Component, Path, PathBuf};
 
 /// Writes the case of a deck, beside the deck or to a file; to standard output for `-`.
-pub fn import(deck: &Path, output: Option<PathBuf>, json: bool) -> u8 {
+pub fn import(deck: &Path, output: Option<PathBuf>, keeps_stiffness: bool, json: bool) -> u8 {
     let output = output.unwrap_or_else(|| deck.with_extension("toml"));
-    match written(deck, &output) {
+    match written(deck, &output, keeps_stiffness) {
         Err(error) => report(&error, json),
         Ok(text) if output == Path::new("-") => {
             console::print(format_args!("{text}"));
@@ -33,8 +33,9 @@ pub fn import(deck: &Path, output: Option<PathBuf>, json: bool) -> u8 {
 }
 
 /// The text of the case, which is written unless it goes to standard output.
-fn written(deck: &Path, output: &Path) -> Result<String, CaseError> {
+fn written(deck: &Path, output: &Path, keeps_stiffness: bool) -> Result<String, CaseError> {
     let read = read(deck).map_err(|e| CaseError::new(e.to_string()))?;
+    let read = Deck { keeps_stiffness, ..read };
     let to_file = output != Path::new("-");
     let folder = if to_file { output.parent().unwrap_or(Path::new("")) } else { Path::new("") };
     let text = case::text(&read, &way(folder, deck)).map_err(|e| CaseError::new(e.to_string()))?;

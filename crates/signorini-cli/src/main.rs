@@ -175,6 +175,9 @@ enum Command {
         /// The case file, or - for standard output (default: the name of the deck, with .toml)
         #[arg(short, long, value_name = "CASE")]
         output: Option<PathBuf>,
+        /// Keep linear stiffnesses of contacts as compliances of the surfaces
+        #[arg(long)]
+        keep_stiffness: bool,
     },
     /// Rewrite case files of earlier versions with the present names of keys
     #[command(
@@ -363,7 +366,7 @@ fn main() -> ExitCode {
         }
         Command::View { folder, port } => report::view(&folder, port, json),
         Command::New { template, folder } => begin::new(&template, folder, json),
-        Command::Import { deck, output } => import::import(&deck, output, json),
+        Command::Import { deck, output, keep_stiffness } => import::import(&deck, output, keep_stiffness, json),
         Command::Migrate { files } => begin::migrate(&files, json),
         Command::Explain { word } => begin::explain(word.as_deref(), json),
         Command::Schema { summary, markdown } => begin::schema(summary, markdown),

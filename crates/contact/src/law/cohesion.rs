@@ -297,6 +297,10 @@ fn root([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> [f64; 2]) -> f64 {
 }
 
 impl Law for Cohesion {
+    fn begin(&mut self, time: f64) {
+        self.friction.begin(time);
+    }
+
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         self.friction.friction(trial, pressure)
     }

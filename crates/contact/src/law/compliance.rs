@@ -100,6 +100,10 @@ impl Rough {
 }
 
 impl Law for Rough {
+    fn begin(&mut self, time: f64) {
+        self.friction.iter_mut().for_each(|law| law.begin(time));
+    }
+
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         self.friction_at(trial, pressure, &LawPoint::default())
     }

@@ -30,6 +30,11 @@ impl Coulomb {
         Ok(Coulomb { mu })
     }
 
+    /// Without friction.
+    pub fn frictionless() -> Self {
+        Coulomb { mu: [0.0; 2] }
+    }
+
     pub fn mu(&self) -> [f64; 2] {
         self.mu
     }

@@ -15,6 +15,8 @@
 mod cohesion;
 mod compliance;
 mod coulomb;
+mod scheduled;
+mod tied;
 mod tresca;
 mod viscous;
 mod wear;
@@ -22,6 +24,8 @@ mod wear;
 pub use cohesion::{Cohesion, CohesionKeys, Softening};
 pub use compliance::{Compliance, Rough};
 pub use coulomb::Coulomb;
+pub use scheduled::{Schedule, Scheduled};
+pub use tied::Tied;
 pub use tresca::Tresca;
 pub use viscous::Viscous;
 pub use wear::Worn;
@@ -87,6 +91,11 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// The admissible friction traction closest to the trial, under a pressure that is positive.
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction;
 
+    /// Begins an increment to a time: for laws that change with it.
+    fn begin(&mut self, time: f64) {
+        let _ = time;
+    }
+
     /// The same for laws that know the point, such as the velocity of slip `(ζ - T)/per_velocity` there.
     fn friction_at(&self, trial: [f64; 2], pressure: f64, point: &LawPoint) -> Friction {
         let _ = point;
@@ -123,6 +132,11 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     /// The largest traction against opening, and that along the surface without pressure.
     fn strength(&self) -> [f64; 2] {
         [0.0; 2]
+    }
+
+    /// Whether it holds surfaces together for ever.
+    fn is_tied(&self) -> bool {
+        false
     }
 
     /// Whether it holds only what touches at the start.
@@ -247,6 +261,9 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     }
     fn strength(&self) -> [f64; 2] {
         (**self).strength()
+    }
+    fn is_tied(&self) -> bool {
+        (**self).is_tied()
     }
     fn is_bond(&self) -> bool {
         (**self).is_bond()

@@ -32,6 +32,10 @@ impl Worn {
 }
 
 impl Law for Worn {
+    fn begin(&mut self, time: f64) {
+        self.friction.begin(time);
+    }
+
     fn friction(&self, trial: [f64; 2], pressure: f64) -> Friction {
         self.friction.friction(trial, pressure)
     }

@@ -1,4 +1,4 @@
-//! Bodies: connected parts of the mesh with one material.
+//! Bodies: connected parts of the mesh with one material. Parts of several materials that share nodes are bodies that are tied.
 
 use super::Names;
 use crate::ImportError;
@@ -6,7 +6,7 @@ use crate::adjust::Adjustment;
 use crate::components::components;
 use crate::deck::{Deck, Law};
 use signorini_geometry::Point;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A body of the case.
 #[derive(Clone, Debug)]
@@ -21,6 +21,11 @@ pub(super) struct Body {
     pub(super) material: String,
     pub(super) axes: Option<[[f64; 3]; 2]>,
     pub(super) is_rigid: bool,
+    /// Whether it shares nodes with other bodies, of other materials.
+    pub(super) is_split: bool,
+    /// Whether it is rigid and does not turn, and is a solid that is held everywhere: it is then touched on the surfaces that
+    /// the deck states, and not on all of its boundary.
+    pub(super) is_held: bool,
     /// Of a rigid body that is touched on a flat surface: a point of it and the outward normal.
     pub(super) plane: Option<[[f64; 3]; 2]>,
     /// Groups of nodes and faces that supports and loads need.
@@ -61,6 +66,15 @@ pub(super) fn plane(deck: &Deck, body: &Body) -> Option<[[f64; 3]; 2]> {
     Some([a.into(), (normal + Point::<3>::zeros()).into()])
 }
 
+/// Whether a rigid body moves as prescribed without turning.
+pub(super) fn is_moved(deck: &Deck, body: &Body) -> bool {
+    let Some((_, motion)) = deck.rigid.get(&body.material) else { return true };
+    let dimension = deck.space().dimension();
+    let turns: &[usize] = if dimension == 3 { &[3, 4, 5] } else { &[5] };
+    let rests = |c: &usize| motion.components[*c].as_ref().and_then(|c| c.as_constant()) == Some(0.0);
+    turns.iter().all(rests) && motion.components[..dimension].iter().all(Option::is_some)
+}
+
 /// The bodies of a deck, in the order of their first elements.
 pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
     let wrong = |line: Option<usize>, message: String| ImportError::new(&deck.file, line, message);
@@ -78,39 +92,43 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
     }
     let sets: HashMap<&str, BTreeSet<u64>> =
         deck.element_sets.iter().map(|(name, list)| (name, list.iter().copied().collect())).collect();
-    let mut out = Vec::new();
+    let material = |s: usize| {
+        let section = &deck.sections[s];
+        let none = || wrong(Some(section.line), format!("there is no material `{}`", section.material));
+        let (_, material) = deck.materials.get(&section.material).ok_or_else(none)?;
+        let none =
+            || wrong(Some(material.line), format!("the material `{}` has no law that is known here", section.material));
+        material.law.clone().ok_or_else(none)
+    };
+    // Connected parts; those of several materials by section, which share nodes then.
+    let mut parts: Vec<(Vec<usize>, usize, bool)> = Vec::new();
     for part in &all {
-        let mut sections = BTreeSet::new();
+        let mut by_section: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for element in part {
             let none = || {
                 let number = deck.elements[*element].number;
                 wrong(None, format!("the element {number} has no section, and so no material"))
             };
-            sections.insert(section_of[*element].ok_or_else(none)?);
+            by_section.entry(section_of[*element].ok_or_else(none)?).or_default().push(*element);
         }
-        let material = |s: usize| {
-            let section = &deck.sections[s];
-            let none = || wrong(Some(section.line), format!("there is no material `{}`", section.material));
-            let (_, material) = deck.materials.get(&section.material).ok_or_else(none)?;
-            let none = || {
-                wrong(Some(material.line), format!("the material `{}` has no law that is known here", section.material))
-            };
-            material.law.clone().ok_or_else(none)
-        };
-        let [first, rest @ ..] = &sections.iter().copied().collect::<Vec<_>>()[..] else { continue };
+        let Some(first) = by_section.keys().next().copied() else { continue };
+        let law = material(first)?;
+        let mut is_one = true;
+        for section in by_section.keys() {
+            is_one &= material(*section)? == law && deck.sections[*section].axes == deck.sections[first].axes;
+        }
+        if is_one {
+            parts.push((part.clone(), first, false));
+            continue;
+        }
+        for (section, elements) in by_section {
+            let own = components(elements.into_iter().map(|k| (k, &deck.elements[k])));
+            parts.extend(own.into_iter().map(|elements| (elements, section, true)));
+        }
+    }
+    let mut out = Vec::new();
+    for (part, first, is_split) in &parts {
         let law = material(*first)?;
-        for other in rest {
-            let (a, b) = (&deck.sections[*first], &deck.sections[*other]);
-            if material(*other)? != law || a.axes != b.axes {
-                return Err(wrong(
-                    Some(b.line),
-                    format!(
-                        "`{}` and `{}` share nodes, but have different materials: a body has one material here",
-                        a.elements, b.elements
-                    ),
-                ));
-            }
-        }
         let numbers: BTreeSet<u64> = part.iter().map(|k| deck.elements[*k].number).collect();
         let own = &deck.sections[*first].elements;
         let is_own = |name: &str| sets.get(name).is_some_and(|set| *set == numbers);
@@ -118,14 +136,18 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
         let mut equal: Vec<&str> = sets.keys().copied().filter(|name| is_own(name)).collect();
         equal.sort_unstable();
         let group = if is_own(own_name) { Some(own_name) } else { equal.first().copied() };
+        // Of a part that shares nodes with others the elements of its section tell it from them.
+        let by_section = (*is_split && group.is_none()).then_some(own_name);
         let first_node = deck.elements[part[0]].nodes[0];
         out.push(Body {
             name: names.take(group.unwrap_or(own_name)),
             elements: part.iter().copied().collect(),
             contained: part.iter().flat_map(|k| deck.elements[*k].nodes.iter().copied()).collect(),
-            group: group.filter(|_| all.len() > 1).map(str::to_string),
-            connected_to: (group.is_none() && all.len() > 1).then_some(first_node),
+            group: group.filter(|_| parts.len() > 1).or(by_section).map(str::to_string),
+            connected_to: (group.is_none() && parts.len() > 1).then_some(first_node),
+            is_split: *is_split,
             is_rigid: law == Law::Rigid,
+            is_held: false,
             plane: None,
             law,
             material: deck.sections[*first].material.clone(),

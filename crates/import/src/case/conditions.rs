@@ -8,9 +8,9 @@ use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
 
 /// The part of a body on which something acts: its name in the case.
-struct On {
-    body: usize,
-    text: String,
+pub(super) struct On {
+    pub(super) body: usize,
+    pub(super) text: String,
 }
 
 impl Writer<'_> {
@@ -41,6 +41,11 @@ impl Writer<'_> {
                 if support.tied.contains(&true) {
                     let _ = writeln!(out, "tied = {:?}", &support.tied[..dimension]);
                 }
+                for (key, time) in [("from", support.from), ("until", support.until)] {
+                    if let Some(time) = time {
+                        let _ = writeln!(out, "{key} = {time:?}");
+                    }
+                }
             }
         }
         for k in (0..self.bodies.len()).filter(|k| self.bodies[*k].is_rigid).collect::<Vec<_>>() {
@@ -61,7 +66,10 @@ impl Writer<'_> {
                 LoadKind::BodyForce(f) => format!("body_force = {}", self.values.vector(f, dimension)),
                 LoadKind::Pressure(p) => format!("pressure = {}", self.values.value(p)),
             };
-            let places = self.places(&load.on)?;
+            let places = match &load.kind {
+                LoadKind::NodalForce(_) if self.bodies.iter().any(|b| b.is_split) => self.places_once(&load.on)?,
+                _ => self.places(&load.on)?,
+            };
             let several = places.len() > 1;
             for on in places {
                 let body = &self.bodies[on.body];
@@ -92,13 +100,33 @@ impl Writer<'_> {
 
     /// The bodies that a place touches, with the name of that part. Groups that the mesh of a body does not have by itself are
     /// added to it.
-    fn places(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
+    pub(super) fn places(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
         let mut out = Vec::new();
         for body in 0..self.bodies.len() {
             if let Some(group) = self.group(place, body)? {
                 let name = &self.bodies[body].name;
                 let text = group.map_or_else(|| name.clone(), |group| format!("{name}:{group}"));
                 out.push(On { body, text });
+            }
+        }
+        Ok(out)
+    }
+
+    /// The same of nodes, each in the first body that has it.
+    fn places_once(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
+        let (name, nodes) = match place {
+            Place::NodeSet(name) => match self.deck.node_sets.get(name) {
+                Some((name, nodes)) => (name.to_string(), nodes.clone()),
+                None => return self.places(place),
+            },
+            Place::Nodes(name, nodes) => (name.clone(), nodes.clone()),
+            _ => return self.places(place),
+        };
+        let mut out = Vec::new();
+        for body in 0..self.bodies.len() {
+            let own = Place::Nodes(name.clone(), self.nodes_of_its_own(body, &nodes));
+            if let Some(Some(group)) = self.group(&own, body)? {
+                out.push(On { body, text: format!("{}:{group}", self.bodies[body].name) });
             }
         }
         Ok(out)
@@ -197,7 +225,21 @@ impl Writer<'_> {
     fn rigid_support(&mut self, k: usize, names: &mut Names) -> String {
         let used = self.rigid_components();
         let name = self.bodies[k].name.clone();
-        let Some((_, motion)) = self.deck.rigid.get(&self.bodies[k].material) else { return String::new() };
+        let rests = RigidMotion::default();
+        let motion = match self.deck.rigid.get(&self.bodies[k].material) {
+            Some((_, motion)) => motion,
+            None if self.bodies[k].is_held => &rests,
+            None => return String::new(),
+        };
+        if self.bodies[k].is_held {
+            let dimension = self.deck.space().dimension();
+            let list: Vec<String> = motion.components[..dimension]
+                .iter()
+                .map(|c| self.values.value(c.as_ref().unwrap_or(&Curve::constant(0.0))))
+                .collect();
+            let displacement = list.join(", ");
+            return format!("\n[supports.{}]\non = \"{name}\"\ndisplacement = [{displacement}]\n", names.take(&name));
+        }
         if !moves_freely(&used, motion) || used.iter().all(|c| motion.components[*c].is_none()) {
             return String::new();
         }
@@ -234,6 +276,7 @@ fn merged(supports: &[Support]) -> Vec<Support> {
     for support in supports {
         let fits = |other: &&mut Support| {
             other.on == support.on
+                && (other.from, other.until) == (support.from, support.until)
                 && (0..3).all(|k| other.displacement[k].is_none() || support.displacement[k].is_none())
                 && (0..3).all(|k| !(other.tied[k] && support.displacement[k].is_some()))
                 && (0..3).all(|k| !(support.tied[k] && other.displacement[k].is_some()))

@@ -3,30 +3,46 @@
 use super::{Names, Writer, quoted};
 use crate::ImportError;
 use crate::deck::{Friction, Surface};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 impl Writer<'_> {
     /// The tables of all contacts.
     pub(super) fn contacts(&mut self) -> Result<String, ImportError> {
         let mut names = Names::default();
+        // Bodies that touch themselves do so with all of their surface.
+        let mut selves = BTreeSet::new();
         let mut out = String::new();
         for pair in &self.deck.contacts {
             let wrong = |message: String| ImportError::new(&self.deck.file, pair.line, message);
-            if pair.friction == Friction::Tied {
-                return Err(wrong(format!(
-                    "`{}` and `{}` are tied: cannot be imported, joined surfaces do not exist here",
-                    pair.slave, pair.master
-                )));
-            }
             let surface = |name: &str| {
                 let none = || wrong(format!("there is no surface `{name}`"));
                 self.deck.surfaces.get(name).map(|(name, surface)| (name.to_string(), surface)).ok_or_else(none)
             };
             let ((slave, on_slave), (master, on_master)) = (surface(&pair.slave)?, surface(&pair.master)?);
-            let friction = match pair.friction {
-                Friction::Coulomb(mu) => format!("friction.coulomb = {{ mu = {mu:?} }}\n"),
-                _ => String::new(),
+            let mut friction = match pair.friction.clone() {
+                Friction::None => String::new(),
+                Friction::Coulomb(mu) => format!("friction.coulomb = {{ mu = {} }}\n", self.values.value(&mu)),
+                Friction::Tied { within: None } => "tied = true\n".into(),
+                Friction::Tied { within: Some(within) } => format!("tied = true\ntie_distance = {within:?}\n"),
+                Friction::Sticky { strength, opening } => {
+                    let energy = strength * opening;
+                    format!("cohesion = {{ strength = {strength:?}, energy = {energy:?}, opening = {opening:?} }}\n")
+                }
             };
+            match pair.stiffness.filter(|_| !matches!(pair.friction, Friction::Tied { .. })) {
+                Some(stiffness) if self.deck.keeps_stiffness => {
+                    let text = format!("compliance.power = {{ pressure = {:?}, penetration = 1 }}\n", stiffness.value);
+                    friction.push_str(&text);
+                }
+                Some(stiffness) => self.remark(format!(
+                    "line {}: the stiffness {:?} of the surfaces is left out; here they do not penetrate (`signorini import \
+                     --keep-stiffness` keeps it)",
+                    stiffness.line, stiffness.value
+                )),
+                None => {}
+            }
+            let is_tied = matches!(pair.friction, Friction::Tied { .. });
             let bodies = |surface: &Surface| -> Vec<usize> {
                 (0..self.bodies.len()).filter(|k| self.touches(*k, surface)).collect()
             };
@@ -40,13 +56,27 @@ impl Writer<'_> {
                     let [own, other] = [a, b].map(|k| &self.bodies[*k]);
                     let part = |k: usize, group: &str| {
                         let body = &self.bodies[k];
-                        if body.is_rigid { quoted(&body.name) } else { quoted(&format!("{}:{group}", body.name)) }
+                        if body.is_rigid && !body.is_held {
+                            quoted(&body.name)
+                        } else {
+                            quoted(&format!("{}:{group}", body.name))
+                        }
                     };
                     if own.is_rigid && other.is_rigid {
                         remarks.push(format!(
                             "the contact of the rigid bodies `{}` and `{}` is left out",
                             own.name, other.name
                         ));
+                        continue;
+                    }
+                    if is_tied && a == b {
+                        remarks.push(format!("the tie of `{slave}` with `{master}` within `{}` is left out", own.name));
+                        continue;
+                    }
+                    // What is held everywhere is touched by what deforms.
+                    let ((a, slave), (b, master)) =
+                        if own.is_held { ((b, &master), (a, &slave)) } else { ((a, &slave), (b, &master)) };
+                    if a == b && !selves.insert(*a) {
                         continue;
                     }
                     let between = if a == b {
@@ -56,7 +86,7 @@ impl Writer<'_> {
                         ));
                         format!("self_contact = {}", quoted(&own.name))
                     } else {
-                        format!("between = [{}, {}]", part(*a, &slave), part(*b, &master))
+                        format!("between = [{}, {}]", part(*a, slave), part(*b, master))
                     };
                     let name = names.take(&pair.name);
                     let _ = writeln!(out, "\n[contacts.{name}]\n{between}\n{friction}");

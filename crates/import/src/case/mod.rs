@@ -6,6 +6,7 @@
 mod bodies;
 mod conditions;
 mod contacts;
+mod interfaces;
 mod material;
 mod names;
 mod values;
@@ -21,7 +22,7 @@ use values::Values;
 /// The case of a deck, as TOML. `file` is the path of the deck from the folder of the case.
 ///
 /// # Errors
-/// What the deck states and a case cannot: parts of several materials, tied surfaces, conditions on nothing.
+/// What the deck states and a case cannot: materials without a law, conditions on nothing.
 pub fn text(deck: &Deck, file: &str) -> Result<String, ImportError> {
     Writer::new(deck, file)?.text()
 }
@@ -42,6 +43,7 @@ impl<'a> Writer<'a> {
         let mut bodies = bodies(deck)?;
         for body in bodies.iter_mut().filter(|b| b.is_rigid) {
             body.plane = bodies::plane(deck, body);
+            body.is_held = body.plane.is_none() && bodies::is_moved(deck, body);
         }
         for adjustment in &deck.adjustments {
             let Some((_, surface)) = deck.surfaces.get(&adjustment.surface) else { continue };
@@ -63,6 +65,7 @@ impl<'a> Writer<'a> {
         let supports = self.supports()?;
         let loads = self.loads()?;
         let contacts = self.contacts()?;
+        let interfaces = self.interfaces() + &self.carried()?;
         let bodies = self.body_tables();
         let deck = self.deck;
         let mut out = String::new();
@@ -81,6 +84,7 @@ impl<'a> Writer<'a> {
         out.push_str(&supports);
         out.push_str(&loads);
         out.push_str(&contacts);
+        out.push_str(&interfaces);
         for step in &deck.steps {
             let _ = writeln!(out, "\n[[steps]]\nto = {:?}\nincrements = {}", step.to, step.increments);
         }
@@ -91,10 +95,16 @@ impl<'a> Writer<'a> {
     fn body_tables(&mut self) -> String {
         let mut out = String::new();
         for k in 0..self.bodies.len() {
-            let kind = if self.bodies[k].is_rigid { "rigid" } else { "solid" };
+            let is_held = self.bodies[k].is_held;
+            let kind = if self.bodies[k].is_rigid && !is_held { "rigid" } else { "solid" };
             let body = &self.bodies[k];
             let _ = writeln!(out, "\n[bodies.{}.{kind}]", body.name);
-            if body.is_rigid {
+            if is_held {
+                out.push_str("material.linear_elastic = { youngs_modulus = 1.0, poissons_ratio = 0.0 }\n");
+                let message =
+                    format!("the rigid body `{}`, which does not turn, is a solid that is held everywhere", body.name);
+                self.remark(message);
+            } else if body.is_rigid {
                 out.push_str(&self.motion(k));
             } else {
                 let hyperelastic = material::needs_finite_strain(&body.law);
@@ -114,7 +124,7 @@ impl<'a> Writer<'a> {
                 self.remark(message);
                 continue;
             }
-            let key = if body.is_rigid { "shape.file" } else { "mesh.file" };
+            let key = if body.is_rigid && !is_held { "shape.file" } else { "mesh.file" };
             let _ = writeln!(out, "\n[bodies.{}.{kind}.{key}]\nfile = {}", body.name, quoted(self.file));
             if let Some(group) = &body.group {
                 let _ = writeln!(out, "group = {}", quoted(group));

@@ -2,6 +2,7 @@
 
 use super::xml::{File, child, text};
 use crate::ImportError;
+use crate::curve::Curve;
 use crate::deck::{ContactPair, Deck, Friction};
 use roxmltree::Node;
 
@@ -16,18 +17,21 @@ pub(super) fn read(file: &File, section: Node, deck: &mut Deck) -> Result<(), Im
             | "sliding_with_gaps"
             | "facet-to-facet sliding"
             | "sliding2" => match child(node, "fric_coeff").map(|n| file.number(n)).transpose()? {
-                Some(mu) if mu > 0.0 => Friction::Coulomb(mu),
+                Some(mu) if mu > 0.0 => Friction::Coulomb(Curve::constant(mu)),
                 _ => Friction::None,
             },
             "tied-node-on-facet" | "tied-facet-on-facet" | "tied-elastic" | "tied" | "facet-to-facet tied" => {
-                Friction::Tied
+                let within = child(node, "max_distance").map(|n| file.number(n)).transpose()?;
+                Friction::Tied { within: within.filter(|within| *within > 0.0) }
             }
+            "sticky" => sticky(file, node, deck)?,
             other => {
                 return Err(file.wrong(
                     node,
                     format!(
                         "cannot be imported: a contact of type `{other}`; valid are sliding-node-on-facet, \
-                         sliding-facet-on-facet and sliding-elastic"
+                         sliding-facet-on-facet, sliding-elastic, tied-node-on-facet, tied-facet-on-facet, \
+                         tied-elastic and sticky"
                     ),
                 ));
             }
@@ -51,9 +55,22 @@ pub(super) fn read(file: &File, section: Node, deck: &mut Deck) -> Result<(), Im
             deck.remark(line, format!("`{pair}`, two_pass: one pass with the first surface as slave is enough here"));
         }
         let name = node.attribute("name").unwrap_or(pair).to_string();
-        deck.contacts.push(ContactPair { name, slave, master, friction, line });
+        deck.contacts.push(ContactPair { name, slave, master, friction, stiffness: None, line });
     }
     Ok(())
+}
+
+/// A sticky contact: springs of its penalty that let go at a traction; without one a tie.
+fn sticky(file: &File, node: Node, deck: &mut Deck) -> Result<Friction, ImportError> {
+    let number = |name: &str| child(node, name).map(|n| file.number(n)).transpose();
+    let Some(strength) = number("max_traction")?.filter(|v| *v > 0.0) else {
+        return Ok(Friction::Tied { within: None });
+    };
+    let penalty = number("penalty")?.filter(|v| *v > 0.0).unwrap_or(1.0);
+    let message = "sticky contacts let go suddenly at their largest traction; here the traction falls to zero over an opening \
+                   as long as that at which it is reached";
+    deck.remark(file.line(node), message);
+    Ok(Friction::Sticky { strength, opening: strength / penalty })
 }
 
 /// The surfaces of a pair: slave, master.

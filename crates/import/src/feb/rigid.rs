@@ -126,15 +126,13 @@ pub(super) fn tie(file: &File, deck: &mut Deck) -> Result<(), ImportError> {
         let motion = motion(file, node, &body, deck)?.clone();
         let turns = motion.components[3..].iter().any(|c| c.as_ref().and_then(Curve::as_constant) != Some(0.0));
         if turns || motion.force.iter().any(Option::is_some) {
-            return Err(file.wrong(
-                node,
-                format!("cannot be imported: nodes that move with the rigid body `{body}`, which turns or is pushed"),
-            ));
+            deck.carried.push((on, body));
+            continue;
         }
         let [x, y, z, ..] = &motion.components;
         let displacement = [x.clone(), y.clone(), z.clone()];
         let tied = displacement.each_ref().map(Option::is_none);
-        deck.supports.push(Support { on, displacement, tied });
+        deck.supports.push(Support { on, displacement, tied, from: None, until: None });
     }
     Ok(())
 }

@@ -59,6 +59,8 @@ pub(super) fn continued(before: Option<&Curve>, value: f64, change: &Change, spa
 #[derive(Clone, Debug, Default)]
 pub(super) struct NodeHistories {
     list: BTreeMap<u64, BTreeMap<usize, (String, Curve)>>,
+    /// The time at which the history of a node and a direction begins, where that is not the start.
+    begins: BTreeMap<(u64, usize), f64>,
 }
 
 impl NodeHistories {
@@ -70,6 +72,24 @@ impl NodeHistories {
     pub(super) fn set(&mut self, node: u64, direction: usize, target: &str, curve: Curve) {
         let target = if target.parse::<u64>().is_ok() { "nodes" } else { target };
         self.list.entry(node).or_default().insert(direction, (target.to_string(), curve));
+    }
+
+    /// Sets the time at which a history begins.
+    pub(super) fn begin(&mut self, node: u64, direction: usize, time: f64) {
+        if time > 0.0 {
+            self.begins.insert((node, direction), time);
+        }
+    }
+
+    /// Moves the history of a node and a direction to others.
+    pub(super) fn end(&mut self, node: u64, direction: usize, to: &mut NodeHistories) {
+        if let Some(own) = self.list.get_mut(&node).and_then(|list| list.remove(&direction)) {
+            to.list.entry(node).or_default().insert(direction, own);
+        }
+        if let Some(time) = self.begins.remove(&(node, direction)) {
+            to.begin(node, direction, time);
+        }
+        self.list.retain(|_, list| !list.is_empty());
     }
 
     pub(super) fn keys(&self) -> Vec<(u64, usize)> {
@@ -114,13 +134,28 @@ impl NodeHistories {
         groups.into_iter().map(place).collect()
     }
 
-    /// The supports of prescribed displacements.
-    pub(super) fn supports(&self, deck: &Deck) -> Vec<Support> {
-        let support = |(on, mut histories): (Place, BTreeMap<usize, (String, Curve)>)| {
-            let displacement = std::array::from_fn(|d| histories.remove(&d).map(|(_, curve)| curve));
-            Support { on, displacement, tied: [false; 3] }
-        };
-        self.places(deck).into_iter().map(support).collect()
+    /// The supports of prescribed displacements, which hold until a time if one is given.
+    pub(super) fn supports(&self, deck: &Deck, until: Option<f64>) -> Vec<Support> {
+        let mut times: Vec<f64> = self.begins.values().copied().collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let mut out = Vec::new();
+        for from in std::iter::once(None).chain(times.into_iter().map(Some)) {
+            let mut own = NodeHistories::default();
+            for (node, list) in &self.list {
+                for (direction, history) in list {
+                    if self.begins.get(&(*node, *direction)).copied() == from {
+                        own.list.entry(*node).or_default().insert(*direction, history.clone());
+                    }
+                }
+            }
+            let support = |(on, mut histories): (Place, BTreeMap<usize, (String, Curve)>)| {
+                let displacement = std::array::from_fn(|d| histories.remove(&d).map(|(_, curve)| curve));
+                Support { on, displacement, tied: [false; 3], from, until }
+            };
+            out.extend(own.places(deck).into_iter().map(support));
+        }
+        out
     }
 
     /// The loads of forces on nodes.
@@ -161,7 +196,7 @@ impl EqualDisplacements {
         }
         let support = |(nodes, tied): (&BTreeSet<u64>, [bool; 3])| {
             let on = Place::Nodes("equal".into(), nodes.iter().copied().collect());
-            Support { on, displacement: [None, None, None], tied }
+            Support { on, displacement: [None, None, None], tied, from: None, until: None }
         };
         tied.into_iter().map(support).collect()
     }

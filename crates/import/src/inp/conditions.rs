@@ -64,7 +64,7 @@ impl Model {
 
     fn renew(&mut self, card: &Card, what: Conditions) {
         if card.value("OP").is_some_and(|v| v.eq_ignore_ascii_case("NEW")) {
-            self.histories.renew(what, card.line);
+            self.histories.renew(what);
         }
     }
 
@@ -194,10 +194,7 @@ impl Model {
     }
 
     pub(super) fn end_step(&mut self) -> Result<(), ImportError> {
-        if let Some((node, line)) = self.histories.end_step() {
-            let message = format!("cannot be imported: the node {node} is released here; supports hold at all times");
-            return Err(ImportError::new(&self.deck.file, line, format!("*BOUNDARY, OP=NEW: {message}")));
-        }
+        self.histories.end_step();
         self.in_step = false;
         self.at_once = false;
         self.time = self.histories.steps.last().map_or(0.0, |s| s.to);

@@ -4,7 +4,8 @@ use super::card::{Card, Data};
 use super::model::Model;
 use crate::ImportError;
 use crate::adjust::Adjustment;
-use crate::deck::{ContactPair, Friction};
+use crate::curve::{Curve, JUMP};
+use crate::deck::{ContactPair, Friction, Stiffness};
 
 impl Model {
     pub(super) fn behaviour(&mut self, card: &Card) -> Result<(), ImportError> {
@@ -12,22 +13,25 @@ impl Model {
         let Some(interaction) = self.interaction.as_ref().and_then(|name| self.interactions.get_mut(name)) else {
             return Err(card.wrong(None, "expected *SURFACE INTERACTION before it"));
         };
+        if self.in_step && (kind == "TIED") != matches!(interaction.friction, Friction::Tied { .. }) {
+            return Err(card.wrong(None, "cannot be imported: surfaces that are tied in some steps only"));
+        }
         if kind == "TIED" {
-            interaction.friction = Friction::Tied;
+            interaction.friction = Friction::Tied { within: None };
+            return Ok(());
         }
         // Hard contact is what there is here.
         if kind != "HARD" {
             let stated = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?;
-            let stiffness = stated.map_or(String::new(), |k| format!(" {k:?}"));
-            // A stiffness that is meant, and not a penalty, is a compliance.
-            let kept = stated.filter(|_| kind == "LINEAR").map_or(String::new(), |k| {
-                format!(" (to keep it: compliance.power = {{ pressure = {k:?}, penetration = 1 }} in the contact)")
-            });
-            let message = format!(
-                "*{}, {kind}: its stiffness{stiffness} is left out; here surfaces do not penetrate{kept}",
-                card.keyword
-            );
-            self.deck.remark(card.line, message);
+            interaction.stiffness = None;
+            match stated.filter(|k| kind == "LINEAR" && *k > 0.0) {
+                Some(value) => interaction.stiffness = Some(Stiffness { value, line: card.line }),
+                None => {
+                    let message =
+                        format!("*{}, {kind}: its stiffness is left out; here surfaces do not penetrate", card.keyword);
+                    self.deck.remark(card.line, message);
+                }
+            }
         }
         Ok(())
     }
@@ -36,14 +40,26 @@ impl Model {
         let Some(interaction) = self.interaction.as_ref().and_then(|name| self.interactions.get_mut(name)) else {
             return Err(card.wrong(None, "expected *SURFACE INTERACTION before it"));
         };
+        if matches!(interaction.friction, Friction::Tied { .. }) {
+            return Ok(());
+        }
         let mu = card.data.first().map_or(Ok(None), |d| card.number(d, 0))?.unwrap_or(0.0);
-        let friction = if mu > 0.0 { Friction::Coulomb(mu) } else { Friction::None };
-        if self.in_step && interaction.friction != friction {
-            return Err(card.wrong(None, "cannot be imported: coefficients of friction that change do not exist here"));
-        }
-        if interaction.friction != Friction::Tied {
-            interaction.friction = friction;
-        }
+        let before = match &interaction.friction {
+            Friction::Coulomb(curve) => Some(curve.clone()),
+            _ => None,
+        };
+        let friction = match before {
+            // From the start of the step on.
+            before if self.in_step && self.time > 0.0 => {
+                let mut curve = before.unwrap_or_else(|| Curve::constant(0.0));
+                curve.push(self.time, curve.at(self.time));
+                curve.push(self.time * (1.0 + JUMP), mu);
+                Friction::Coulomb(curve)
+            }
+            _ if mu > 0.0 => Friction::Coulomb(Curve::constant(mu)),
+            _ => Friction::None,
+        };
+        interaction.friction = friction;
         if card.data.first().is_some_and(|d| d.fields.len() > 1) {
             let message = format!("*{}: its stick slope is left out; here contacts stick exactly", card.keyword);
             self.deck.remark(card.line, message);
@@ -70,8 +86,13 @@ impl Model {
     }
 
     pub(super) fn tie(&mut self, card: &Card) -> Result<(), ImportError> {
+        self.only(card, &["NAME", "ADJUST", "POSITIONTOLERANCE"]);
+        let within = card.value("POSITIONTOLERANCE").map(|text| {
+            text.parse::<f64>().map_err(|_| card.wrong(None, format!("POSITION TOLERANCE={text}: expected a number")))
+        });
+        let within = within.transpose()?.filter(|within| *within > 0.0);
         for data in &card.data {
-            let pair = self.pair(card, data, Friction::Tied)?;
+            let pair = self.pair(card, data, Friction::Tied { within })?;
             self.contacts.push((pair, None));
         }
         Ok(())
@@ -93,6 +114,6 @@ impl Model {
             self.deck.surfaces.get(name).map(|(name, _)| name.to_string()).ok_or_else(none)
         };
         let (slave, master) = (surface(0)?, surface(1)?);
-        Ok(ContactPair { name: format!("{slave}_{master}"), slave, master, friction, line: data.line })
+        Ok(ContactPair { name: format!("{slave}_{master}"), slave, master, friction, stiffness: None, line: data.line })
     }
 }

@@ -27,12 +27,20 @@ impl Model {
                     let message = format!("*CONTACT PAIR: there is no *SURFACE INTERACTION `{interaction}`");
                     ImportError::new(&self.deck.file, pair.line, message)
                 };
-                pair.friction = self.interactions.get(&interaction).ok_or_else(none)?.friction.clone();
+                let own = self.interactions.get(&interaction).ok_or_else(none)?;
+                (pair.friction, pair.stiffness) = (own.friction.clone(), own.stiffness);
             }
             self.deck.contacts.push(pair);
         }
         for RigidNodes { material, reference, rotation } in &self.rigid_nodes {
             let mut motion = RigidMotion::default();
+            for node in [reference, rotation].into_iter().flatten() {
+                let is_ended = self.histories.ended.iter().any(|(_, list)| list.keys().iter().any(|k| k.0 == *node));
+                if is_ended {
+                    let message = format!("the node {node} of a rigid body is released in a step: cannot be imported");
+                    return Err(wrong(&message));
+                }
+            }
             for node in [reference, rotation].into_iter().flatten() {
                 let turns = Some(*node) == *rotation && rotation != reference;
                 for (direction, curve) in self.histories.supports.take(*node) {
@@ -46,7 +54,11 @@ impl Model {
             *self.deck.rigid.entry(material) = motion;
         }
         let tied = self.equal.apply(&mut self.histories.supports);
-        self.deck.supports = self.histories.supports.supports(&self.deck);
+        let mut supports = self.histories.supports.supports(&self.deck, None);
+        for (until, ended) in &self.histories.ended {
+            supports.extend(ended.supports(&self.deck, Some(*until)));
+        }
+        self.deck.supports = supports;
         self.deck.supports.extend(tied);
         self.deck.loads = self.histories.forces.loads(&self.deck);
         let thickness = self.deck.sections.iter().map(|s| s.thickness).fold(f64::NAN, f64::max);

@@ -5,13 +5,14 @@ use super::card::Card;
 use super::steps::Histories;
 use super::{material, refused};
 use crate::ImportError;
-use crate::deck::{ContactPair, Deck, Friction, Law, Section};
+use crate::deck::{ContactPair, Deck, Friction, Law, Section, Stiffness};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What a surface interaction says of the contacts that name it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Interaction {
     pub(super) friction: Friction,
+    pub(super) stiffness: Option<Stiffness>,
 }
 
 /// A deck that is being read.

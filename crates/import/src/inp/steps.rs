@@ -45,7 +45,7 @@ struct Pending {
     forces: BTreeMap<(u64, usize), Stated>,
     distributed: BTreeMap<Distributed, Stated>,
     /// Whether all earlier loads of a kind are removed.
-    new_supports: Option<usize>,
+    new_supports: bool,
     new_forces: bool,
     new_distributed: bool,
 }
@@ -65,6 +65,8 @@ pub(super) struct Histories {
     pub(super) forces: NodeHistories,
     pub(super) distributed: BTreeMap<Distributed, Curve>,
     pub(super) steps: Vec<Step>,
+    /// Supports that were released, by the time until which they hold.
+    pub(super) ended: Vec<(f64, NodeHistories)>,
     pending: Pending,
     /// Time and increments of the step that is being read.
     analysis: Option<(f64, usize)>,
@@ -89,9 +91,9 @@ impl Histories {
     }
 
     /// `OP=NEW` removes all earlier conditions of a kind.
-    pub(super) fn renew(&mut self, what: Conditions, line: usize) {
+    pub(super) fn renew(&mut self, what: Conditions) {
         match what {
-            Conditions::Supports => self.pending.new_supports = Some(line),
+            Conditions::Supports => self.pending.new_supports = true,
             Conditions::Forces => self.pending.new_forces = true,
             Conditions::Distributed => self.pending.new_distributed = true,
         }
@@ -113,16 +115,26 @@ impl Histories {
         self.pending.distributed.entry(load).or_insert_with(new).value += value;
     }
 
-    /// Ends a step: all histories go on to its end. Tells which supports are released, if any: a node, and the line.
-    pub(super) fn end_step(&mut self) -> Option<(u64, usize)> {
+    /// Ends a step: all histories go on to its end, but for those of supports that are released in it.
+    pub(super) fn end_step(&mut self) {
         let (time, increments) = self.analysis.take().unwrap_or((1.0, 1));
         let span = Span { from: self.start(), to: self.start() + time };
         let pending = std::mem::take(&mut self.pending);
-        let released = pending.new_supports.and_then(|line| {
-            let gone = self.supports.keys().into_iter().find(|key| !pending.supports.contains_key(key));
-            gone.map(|(node, _)| (node, line))
-        });
+        if pending.new_supports {
+            let mut ended = NodeHistories::default();
+            for (node, direction) in self.supports.keys() {
+                if !pending.supports.contains_key(&(node, direction)) {
+                    self.supports.end(node, direction, &mut ended);
+                }
+            }
+            if !ended.keys().is_empty() {
+                self.ended.push((span.from, ended));
+            }
+        }
         for ((node, direction), stated) in pending.supports {
+            if self.supports.get(node, direction).is_none() {
+                self.supports.begin(node, direction, span.from);
+            }
             let curve = continued(self.supports.get(node, direction), stated.value, &stated.change, span);
             self.supports.set(node, direction, &stated.target, curve);
         }
@@ -150,6 +162,5 @@ impl Histories {
             self.distributed.insert(load, curve);
         }
         self.steps.push(Step { to: span.to, increments });
-        released
     }
 }

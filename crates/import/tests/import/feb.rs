@@ -59,7 +59,7 @@ fn rigid_parts_move_as_they_are_told() {
     let all = text(&fixed("Rx Ry Ru Rv Rw"));
     let read = deck("pressed.feb", &all).unwrap();
     assert_eq!(read.steps[0].to, 2.0);
-    assert_eq!(read.contacts[0].friction, Friction::Coulomb(0.4));
+    assert_eq!(read.contacts[0].friction, Friction::Coulomb(Curve::constant(0.4)));
     let Law::Ogden { mu, alpha, .. } = read.materials.get("rubber").unwrap().1.law.clone().unwrap() else { panic!() };
     assert_eq!((mu, alpha), (vec![1.0], vec![6.8]));
     let (_, motion) = read.rigid.get("plate").unwrap();
@@ -116,6 +116,24 @@ fn the_format_2_5() {
     }
 }
 
+/// Tied and sticky contacts: glued for ever, or up to a traction.
+#[test]
+fn tied_and_sticky_contacts() {
+    let materials = format!("{RUBBER}{PLATE}");
+    let contact = |kind: &str, keys: &str| {
+        let text = format!("<Contact><contact type=\"{kind}\" surface_pair=\"pair\">{keys}</contact></Contact>");
+        deck("tied.feb", &version_4(&materials, &text)).unwrap().contacts[0].friction.clone()
+    };
+    assert_eq!(contact("tied-elastic", ""), Friction::Tied { within: None });
+    assert_eq!(
+        contact("tied-facet-on-facet", "<max_distance>0.5</max_distance>"),
+        Friction::Tied { within: Some(0.5) }
+    );
+    assert_eq!(contact("sticky", "<penalty>4</penalty>"), Friction::Tied { within: None });
+    let sticky = contact("sticky", "<penalty>4</penalty><max_traction>2</max_traction>");
+    assert_eq!(sticky, Friction::Sticky { strength: 2.0, opening: 0.5 });
+}
+
 #[test]
 fn what_cannot_be_imported_is_named_with_its_line() {
     let materials = format!("{RUBBER}{PLATE}");
@@ -132,8 +150,8 @@ fn what_cannot_be_imported_is_named_with_its_line() {
         ),
         (
             &*materials,
-            "<Contact><contact type=\"sticky\" surface_pair=\"pair\"/></Contact>",
-            "<contact>: cannot be imported: a contact of type `sticky`",
+            "<Contact><contact type=\"contact potential\" surface_pair=\"pair\"/></Contact>",
+            "<contact>: cannot be imported: a contact of type `contact potential`",
         ),
         (
             &*materials,

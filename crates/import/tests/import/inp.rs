@@ -1,7 +1,8 @@
 //! Decks of CalculiX and Abaqus.
 
 use crate::{case_of, deck, refused, written};
-use signorini_import::deck::{Friction, Law, LoadKind, Place};
+use signorini_import::curve::Curve;
+use signorini_import::deck::{Deck, Friction, Law, LoadKind, Place};
 use signorini_import::{case, read};
 
 /// Two cubes on top of each other; `{model}` stands behind the mesh, `{steps}` at the end.
@@ -80,12 +81,12 @@ fn a_deck_becomes_bodies_supports_loads_and_contacts() {
     assert_eq!((deck.nodes.len(), deck.elements.len()), (16, 2));
     assert_eq!(deck.node_sets.get("bottom").unwrap().1, &vec![1, 2, 3, 4]);
     assert_eq!(deck.surfaces.get("LOW").unwrap().1.faces, vec![vec![5, 8, 7, 6]]);
-    assert_eq!(deck.contacts[0].friction, Friction::Coulomb(0.2));
+    assert_eq!(deck.contacts[0].friction, Friction::Coulomb(Curve::constant(0.2)));
     let [step] = &deck.steps[..] else { panic!("one step") };
     assert_eq!((step.to, step.increments), (1.0, 4));
     let written = case_of("cubes.inp", &text);
     for line in [
-        "# - line 42: *SURFACE BEHAVIOR, LINEAR: its stiffness 10000000.0 is left out; here surfaces do not penetrate (to keep it: compliance.power = { pressure = 10000000.0, penetration = 1 } in the contact)",
+        "# - line 42: the stiffness 10000000.0 of the surfaces is left out; here they do not penetrate (`signorini import --keep-stiffness` keeps it)",
         "material.linear_elastic = { youngs_modulus = 210000.0, poissons_ratio = 0.3 }",
         "connected_to = 11",
         "sides.pressure = [\"2 2\"]",
@@ -196,7 +197,6 @@ fn what_cannot_be_imported_is_named_with_its_line() {
             "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7",
         ),
         ("*EQUATION\n2\n15, 3, 1., 16, 3, -2.", STEP, "\n2", "*EQUATION: cannot be imported: only equal displacements"),
-        ("*TIE, NAME=T\nHigh, Low", STEP, "High, Low", "`High` and `Low` are tied: cannot be imported"),
     ] {
         let text = cubes(model, steps);
         let (line, message) = refused("wrong.inp", &text);
@@ -207,22 +207,49 @@ fn what_cannot_be_imported_is_named_with_its_line() {
     }
 }
 
-/// A support that a later step removes would hold at all times here.
+/// A support holds in the steps that state it, the coefficient of friction is that of its step, and a stiffness may be kept.
 #[test]
-fn a_support_that_ends_is_refused() {
-    let steps = "*STEP\n*STATIC\n*END STEP\n*STEP\n*STATIC\n*BOUNDARY, OP=NEW\nTop, 1\n*END STEP";
-    let (_, message) = refused("released.inp", &cubes("", steps));
-    assert_eq!(
-        message,
-        "*BOUNDARY, OP=NEW: cannot be imported: the node 1 is released here; supports hold at all times"
-    );
+fn supports_and_friction_change_with_steps() {
+    let steps = "*STEP\n*STATIC\n*END STEP\n*STEP\n*STATIC\n1., 2.\n*BOUNDARY, OP=NEW\nTop, 1\n
+*CHANGE FRICTION, INTERACTION=I1\n*FRICTION\n0.5\n*END STEP";
+    let text = cubes(CONTACT, steps);
+    let deck = Deck { keeps_stiffness: true, ..deck("released.inp", &text).unwrap() };
+    let times: Vec<_> = deck.supports.iter().map(|s| (s.on.clone(), s.from, s.until)).collect();
+    let set = |name: &str| Place::NodeSet(name.into());
+    assert_eq!(times, [(set("Top"), Some(1.0), None), (set("Bottom"), None, Some(1.0))]);
+    let Friction::Coulomb(mu) = &deck.contacts[0].friction else { panic!("friction") };
+    assert_eq!([mu.at(0.0), mu.at(1.0), mu.at(1.1), mu.at(3.0)], [0.2, 0.2, 0.5, 0.5]);
+    let written = case::text(&deck, "released.inp").unwrap();
+    for line in [
+        "from = 1.0",
+        "until = 1.0",
+        "friction.coulomb = { mu = \"curve_1(t)\" }",
+        "compliance.power = { pressure = 10000000.0, penetration = 1 }",
+    ] {
+        assert!(written.lines().any(|l| l == line), "`{line}` is not in\n{written}");
+    }
 }
 
+/// Ties, and bodies of two materials that share nodes: tied on the faces that they share, with the forces on shared nodes once.
 #[test]
-fn a_body_of_two_materials_is_refused() {
+fn ties_and_bodies_of_two_materials_are_tied() {
     let model = "*NODE\n21, 0, 0, -1\n22, 1, 0, -1\n23, 1, 1, -1\n24, 0, 1, -1
 *ELEMENT, TYPE=C3D8, ELSET=Below\n3, 21, 22, 23, 24, 1, 2, 3, 4
-*MATERIAL, NAME=SOFT\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=Below, MATERIAL=SOFT";
-    let (_, message) = refused("two.inp", &cubes(model, STEP));
-    assert_eq!(message, "`EALL` and `Below` share nodes, but have different materials: a body has one material here");
+*MATERIAL, NAME=SOFT\n*ELASTIC\n1., 0.\n*SOLID SECTION, ELSET=Below, MATERIAL=SOFT
+*ELSET, ELSET=First\n1
+*TIE, NAME=T, POSITION TOLERANCE=0.1\nHigh, Low";
+    let steps = "*STEP\n*STATIC\n*CLOAD\nBottom, 1, 2.\n*END STEP";
+    let written = case_of("two.inp", &cubes(model, steps).replace("Bottom, 1, 3\n", "21, 1, 3\n"));
+    let tables: Vec<&str> = written.split("\n\n").collect();
+    for table in [
+        "[contacts.High_Low]\nbetween = [\"Eall:High\", \"First:Low\"]\ntied = true\ntie_distance = 0.1",
+        "[contacts.First_Below_joined]\nbetween = [\"First:to Below\", \"Below:to First\"]\ntied = true",
+    ] {
+        assert!(tables.iter().any(|t| t.trim() == table), "`{table}` is not in\n{written}");
+    }
+    assert!(
+        written.contains("sides.\"to Below\" = [\"1 1\"]") && written.contains("sides.\"to First\" = [\"3 2\"]"),
+        "{written}"
+    );
+    assert_eq!(written.matches("nodal_force").count(), 1, "{written}");
 }

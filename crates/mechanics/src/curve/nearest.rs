@@ -169,6 +169,7 @@ impl Master for CurveMaster<'_> {
         Anchor {
             x: foot.jet.x,
             tangent: foot.jet.u,
+            across: None,
             functions: foot.functions,
             spin: foot.spin,
             frame: foot.frame,

@@ -91,6 +91,17 @@ impl Nodes {
         }
     }
 
+    /// The numbers of the nodes of each face.
+    pub fn of_faces(&self) -> Vec<Vec<u32>> {
+        fn list<const D: usize>(nodes: &PressureNodes<D>) -> Vec<Vec<u32>> {
+            (0..nodes.face_count()).map(|face| nodes.of_face(face).iter().map(|node| node.0).collect()).collect()
+        }
+        match self {
+            Nodes::Plane(nodes) => list(nodes),
+            Nodes::Space(nodes) => list(nodes),
+        }
+    }
+
     /// The flat faces between the nodes.
     pub fn faces(&self) -> Option<ShownSurface> {
         match self {
@@ -117,6 +128,21 @@ impl Nodes {
         }
     }
 
+    /// The points of faces that may face the other side and are near it.
+    pub fn near(
+        &self,
+        slave: &dyn Surface,
+        facing: &Facing,
+        merged: &[bool],
+        is_near: &dyn Fn(usize, &Local) -> bool,
+    ) -> FacingPart {
+        match (self, slave.faces().0) {
+            (Nodes::Plane(nodes), Faces::Plane(of)) => near(nodes, of, facing, merged, is_near),
+            (Nodes::Space(nodes), Faces::Space(of)) => near(nodes, of, facing, merged, is_near),
+            _ => FacingPart::none(merged.len()),
+        }
+    }
+
     /// What of the slave side sees the master.
     pub fn cut(&self, slave: &dyn Surface, master: &dyn Surface, search: &Search, merged: &[bool]) -> FacingPart {
         match (self, slave.faces().0, master.faces().0) {
@@ -140,6 +166,20 @@ fn whole<const D: usize>(
     let mut points = whole_faces(faces);
     points.iter_mut().enumerate().filter(|(face, _)| !facing.slave(*face)).for_each(|(_, list)| list.clear());
     cover(nodes, faces, points, (merged, false))
+}
+
+fn near<const D: usize>(
+    nodes: &PressureNodes<D>,
+    faces: &dyn ContactSurface<D>,
+    facing: &Facing,
+    merged: &[bool],
+    is_near: &dyn Fn(usize, &Local) -> bool,
+) -> FacingPart {
+    let mut points = whole_faces(faces);
+    for (face, list) in points.iter_mut().enumerate() {
+        list.retain(|p| facing.slave(face) && is_near(face, &p.s));
+    }
+    cover(nodes, faces, points, (merged, true))
 }
 
 fn cut<const D: usize>(

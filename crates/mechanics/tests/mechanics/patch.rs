@@ -225,6 +225,7 @@ impl Master for SheetMaster<'_> {
         Anchor {
             x: jet.x,
             tangent: jet.u,
+            across: None,
             functions: self.sheet.functions(xi),
             spin: Vec::new(),
             frame: Matrix::<3>::identity(),

@@ -72,6 +72,35 @@ fn pressed_cubes_have_the_stress_of_a_bar() {
     assert!((number(&step["energy"]) / energy - 1.0).abs() < 1e-5, "{}", step["energy"]);
 }
 
+/// A bar of two materials that share nodes, with forces at its end and on the shared nodes: the tie between its parts carries the
+/// first, and both parts stretch by their own stiffness.
+#[test]
+fn a_bar_of_two_materials_is_tied() {
+    let corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
+    let nodes: Vec<String> =
+        (0..12).map(|k| format!("{}, {}, {}, {}", k + 1, corners[k % 4][0], corners[k % 4][1], k / 4)).collect();
+    let text = format!(
+        "*NODE\n{}\n*ELEMENT, TYPE=C3D8, ELSET=LOW\n1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=HIGH\n2, 5, 6, 7, 8, 9, 10, 11, 12
+*NSET, NSET=BOT\n1, 2, 3, 4\n*NSET, NSET=MID\n5, 6, 7, 8\n*NSET, NSET=TOP\n9, 10, 11, 12
+*NSET, NSET=X0\n1, 4, 5, 8, 9, 12\n*NSET, NSET=Y0\n1, 2, 5, 6, 9, 10
+*MATERIAL, NAME=A\n*ELASTIC\n1000, 0\n*MATERIAL, NAME=B\n*ELASTIC\n2000, 0
+*SOLID SECTION, ELSET=LOW, MATERIAL=A\n*SOLID SECTION, ELSET=HIGH, MATERIAL=B
+*BOUNDARY\nBOT, 3\nX0, 1\nY0, 2\n*STEP\n*STATIC\n*CLOAD\nTOP, 3, 1\nMID, 3, 0.5\n*END STEP",
+        nodes.join("\n")
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("bar.inp");
+    std::fs::write(&path, text).expect("a deck");
+    let found = summary(&case_of(&path), &set(&[("output.probes.end", "[1, 1, 2]".to_string())]));
+    let step = last_step(&found);
+    let pull = number(&step["contacts"]["LOW_HIGH_joined"]["force"][2]);
+    assert!((pull - 4.0).abs() < 1e-9, "{pull}");
+    let stretch = 6.0 / 1000.0 + 4.0 / 2000.0;
+    let end = number(&step["probes"]["end"]["displacement"][2]);
+    assert!((end - stretch).abs() < 1e-12, "{end} instead of {stretch}");
+}
+
 /// Keys of `mesh.file` that do not fit its file are told at their place.
 #[test]
 fn wrong_groups_of_decks_are_told() {

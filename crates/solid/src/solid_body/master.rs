@@ -331,6 +331,7 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
         Anchor {
             x: spatial(&at.x),
             tangent: spatial(&at.tangents[0]),
+            across: Some(if D == 2 { Vector::<3>::z() } else { spatial(&at.tangents[1]) }),
             functions: functions::<D>(&list, |d| [d[1], d[2], 0.0, 0.0, 0.0]),
             frame: Matrix::<3>::identity(),
             ..Anchor::default()

@@ -109,6 +109,9 @@ impl Planner<'_> {
                 problem.error(key, format!("both bodies of contact `{name}` are fixed or have a prescribed motion"))
             );
         }
+        if let Some(found) = self.tied(name, key, [&slave, &master], (system, kinds))? {
+            return Ok(found);
+        }
         if let Some(found) = self.between_curves(name, key, [&slave, &master], system)? {
             return Ok(found);
         }

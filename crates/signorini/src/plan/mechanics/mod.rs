@@ -9,6 +9,7 @@ mod mortar;
 mod places;
 mod rigid;
 mod solids;
+mod tie;
 mod winches;
 
 pub use fields::Wrong;
@@ -63,6 +64,8 @@ pub struct ContactInfo {
     pub slides_little: bool,
     /// Whether it is kept at single nodes of a surface that has none by nature.
     pub at_nodes: bool,
+    /// How deep sides that are tied lie in each other at the start; none of others.
+    pub tied_overlap: Option<f64>,
     /// What was found out about it.
     pub notes: Vec<String>,
     pub warnings: Vec<String>,
@@ -80,6 +83,7 @@ impl ContactInfo {
             carries,
             slides_little: false,
             at_nodes: false,
+            tied_overlap: None,
             notes,
             warnings,
         }

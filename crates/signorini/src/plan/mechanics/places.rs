@@ -2,7 +2,7 @@
 
 use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
-use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, TIME};
 use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Tied, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
@@ -121,6 +121,33 @@ impl Planner<'_> {
         .help("give the same displacement in both supports, or \"free\" in one of them")
     }
 
+    /// The times between which a support holds.
+    fn check_times(
+        &self,
+        key: &crate::problem::Support,
+        [from, until]: [Option<f64>; 2],
+        body: &str,
+    ) -> Result<(), CaseError> {
+        let Some(at) = key.until.as_ref().or(key.from.as_ref()) else { return Ok(()) };
+        if matches!(self.problem.bodies.get(body), Some(Body::Cells(_))) {
+            let message = format!("`{body}` is a body of finite cells: its supports hold at all times");
+            return Err(self.problem.error(at, message).help("leave `from` and `until` out"));
+        }
+        if key.spring.is_some() {
+            return Err(self
+                .problem
+                .error(at, "springs hold at all times")
+                .help("state them in a support of their own"));
+        }
+        match (from, until) {
+            (Some(from), Some(until)) if from >= until => {
+                let message = format!("the support holds from {from} until {until}: at no time");
+                Err(self.problem.error(at, message).help("from < until"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn system_supports(
         &self,
         numbers: &Numbers,
@@ -197,7 +224,10 @@ impl Planner<'_> {
                     .help("add  displacement = [0, 0, 0]  or  normal = 0  or  tied = true  or  rotation = [0, 0, 0]  or  spring = […]"));
             }
             if holds {
-                let support = Support { name: name.clone(), part, displacement, rotation, along, uniform };
+                let time = |value: &Option<Value>| value.as_ref().map(|v| self.reader.number(v, TIME)).transpose();
+                let (from, until) = (time(&key.from)?, time(&key.until)?);
+                self.check_times(key, [from, until], system.bodies[part.body].name())?;
+                let support = Support { name: name.clone(), part, displacement, rotation, along, uniform, from, until };
                 let body = &system.bodies[support.part.body];
                 let hold = at_start(&support);
                 let none: [Option<&dyn Fn(&Point<3>) -> f64>; 3] = [None; 3];

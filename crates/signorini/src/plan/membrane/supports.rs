@@ -36,6 +36,8 @@ impl Planner<'_> {
                 ("normal", key.normal.as_ref().map(|v| self.key(v))),
                 ("tied", key.tied.as_ref().map(|v| self.key(v))),
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
+                ("from", key.from.as_ref().map(|v| self.key(v))),
+                ("until", key.until.as_ref().map(|v| self.key(v))),
             ];
             if let Some((what, at)) = others.iter().find_map(|(w, s)| s.clone().map(|s| (*w, s))) {
                 return Err(self.unavailable(&at, &format!("`{what}` in the support of a membrane")));

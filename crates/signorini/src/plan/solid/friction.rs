@@ -1,9 +1,13 @@
 //! Laws of friction between solids.
 
+use crate::expression::{Expression, Scope};
 use crate::plan::planner::Planner;
-use crate::problem::units::{NONE, PRESSURE};
+use crate::problem::units::{NONE, PRESSURE, TIME};
 use crate::problem::{self, CaseError, Value};
-use signorini_contact::law::{Coulomb, Law, LawError, Tresca, Viscous};
+use signorini_contact::law::{Coulomb, Law, LawError, Scheduled, Tresca, Viscous};
+
+/// Times of a step, beside its start, at which a coefficient that changes is checked.
+const SAMPLES: u32 = 20;
 
 impl Planner<'_> {
     /// The law of friction.
@@ -23,6 +27,12 @@ impl Planner<'_> {
             problem::Friction::Coulomb(key) => key,
         };
         let list = &key.mu.0;
+        if let [mu] = &list[..]
+            && self.reader.number(mu, NONE).is_err()
+            && let Ok(expression) = self.reader.expression(mu, NONE, &["t"])
+        {
+            return self.scheduled(mu, expression);
+        }
         let coefficient = |k: usize| {
             let mu = self.reader.number(&list[k], NONE)?;
             Coulomb::isotropic(mu).map_err(|e| self.not_negative(&list[k], e))?;
@@ -40,6 +50,22 @@ impl Planner<'_> {
         };
         let law = Coulomb::orthotropic(mu).map_err(|e| self.not_negative(&list[0], e))?;
         Ok(Box::new(law))
+    }
+
+    /// A coefficient that changes with time.
+    fn scheduled(&self, mu: &Value, expression: Expression) -> Result<Box<dyn Law>, CaseError> {
+        let at = move |time: f64| expression.evaluate(&Scope { position: [0.0; 3], time });
+        let mut from = 0.0;
+        for step in &self.problem.steps {
+            let to = self.reader.number(&step.to, TIME)?;
+            let times = (0..=SAMPLES).map(|k| from + (to - from) * f64::from(k) / f64::from(SAMPLES));
+            if let Some((time, value)) = times.map(|t| (t, at(t))).find(|(_, mu)| !(*mu >= 0.0 && mu.is_finite())) {
+                let message = format!("the coefficient of friction is {value} at t = {time}");
+                return Err(self.problem.error(mu, message).help("0 or more at all times"));
+            }
+            from = to;
+        }
+        Ok(Box::new(Scheduled::new(Box::new(at))))
     }
 
     fn not_negative(&self, value: &Value, LawError { value: found }: LawError) -> CaseError {

@@ -56,6 +56,10 @@ impl SystemAudit {
         step: &StepReport,
     ) -> Vec<Finding> {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
+        // Coefficients of friction may change with time.
+        for (told, contact) in setting.contacts.iter_mut().zip(&plan.system.contacts) {
+            told.law = contact.friction().map(|law| law_of(law, &plan.head.problem, contact.name()));
+        }
         let bodies = placements(plan, setting, &state.bodies);
         let contacts: Vec<Vec<Touch>> = result.sites.iter().map(|sites| sites.iter().map(touch).collect()).collect();
         let before = self.before.take();
@@ -174,7 +178,7 @@ fn contacts(plan: &MechanicsPlan) -> Vec<Contact> {
             law: contact.friction().map(|law| law_of(law, problem, contact.name())),
             is_small_sliding: tested.slides_little,
             carries,
-            wanted_penetration: wanted.unwrap_or(0.0),
+            wanted_penetration: wanted.or(tested.tied_overlap).unwrap_or(0.0),
             at_places: !["mortar", "discs"].contains(&tested.method),
             surfaces: surfaces(contact.law().friction.as_deref()),
         }

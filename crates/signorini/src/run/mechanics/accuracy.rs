@@ -77,6 +77,8 @@ fn finer(problem: &Problem) -> Option<Finer> {
         least = Some(least.map_or(own, |l| l.min(own)));
     }
     let raised = least.filter(|_| is_known).map(|degree| (raised, 1.0 + 1.0 / degree as f64));
+    // Halved cells have more nodes, and each would carry the force.
+    halves &= problem.loads.values().all(|load| load.nodal_force.is_none());
     let keeps_shape = is_straight || least.is_some_and(|degree| degree >= 2);
     deforms.then_some(Finer { raised, halves, keeps_shape })
 }

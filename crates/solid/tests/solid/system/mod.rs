@@ -21,6 +21,7 @@ mod mortar;
 mod ring;
 mod sliding;
 mod tangents;
+mod tied;
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
 

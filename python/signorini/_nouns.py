@@ -13,8 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '44aa361cde4f1574'
-SCHEMA = '26c000c9b09befa8'
+SCHEMA = '0946f847bd9037e4'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {

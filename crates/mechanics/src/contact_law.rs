@@ -68,6 +68,16 @@ pub(crate) struct PointHistory {
     pub trial: [f64; 3],
 }
 
+/// The scales of the equation of a multiplier.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    /// Traction per gap, of the trial and of the cells.
+    pub trial: f64,
+    pub stiffness: f64,
+    /// That the point stands for.
+    pub area: f64,
+}
+
 /// What the law is given at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointMeasure {
@@ -192,9 +202,16 @@ impl ContactLaw {
         self.enforcement.is_exact() && !self.kept.is_empty()
     }
 
-    /// The traction of each unknown per gap, and the area of its point.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.stiffness.iter().zip(&self.areas).flat_map(|(c, w)| self.slots().iter().map(move |_| [*c, *w]))
+    /// The scales of the equation of each unknown.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row> {
+        let (slots, scale) = (self.slots(), self.trial_scale());
+        let rows = self.stiffness.iter().zip(&self.areas);
+        rows.flat_map(move |(c, w)| slots.iter().map(move |_| Row { trial: *c, stiffness: c / scale, area: *w }))
+    }
+
+    /// The scale of trials now, relative to the stiffness of cells.
+    fn trial_scale(&self) -> f64 {
+        self.scale * if self.is_soft { SOFTER } else { 1.0 }
     }
 
     /// The unknowns of all points as at the last state.
@@ -281,8 +298,7 @@ impl ContactLaw {
     ) {
         let scale = self.areas[k] / self.stiffness[k];
         // Tractions that nothing determines stay where they are.
-        let softened = self.scale * if self.is_soft { SOFTER } else { 1.0 };
-        let resists = if projected.is_some() { 1.0 + UNDETERMINED * softened } else { 1.0 };
+        let resists = if projected.is_some() { 1.0 + UNDETERMINED * self.trial_scale() } else { 1.0 };
         let projected = projected.copied().unwrap_or_default();
         for (i, &slot) in (0u32..).zip(self.slots()) {
             let traction = projected.traction[slot];

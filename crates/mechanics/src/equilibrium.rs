@@ -3,6 +3,7 @@
 //! The merit is the root of the energy `Σ r²/k` of the residual on the springs `k` of the first tangent, one for each
 //! unknown: forces, moments, gaps and what supports lack count alike, in any unit.
 
+use crate::contact_law::Row;
 use crate::eliminated::eliminated_step;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -52,8 +53,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
     pub(crate) is_spin: Vec<bool>,
-    /// Traction per gap of the rows of multipliers, and the weight of their sites.
-    pub(crate) rows: Vec<[f64; 2]>,
+    /// Of each multiplier.
+    pub(crate) rows: Vec<Row>,
     /// Stiffness of each unknown at the start, by which residuals are compared.
     pub(crate) scales: Vec<f64>,
     /// The system at the start, for the first step.
@@ -148,7 +149,8 @@ impl Problem<'_> {
     fn merit(&self, out: &Assembled, held: &[bool]) -> f64 {
         let count = self.is_spin.len();
         let free = (0..count).filter(|k| !held[*k]).map(|k| out.residual[k].powi(2) / self.scales[k]);
-        let rows = self.rows.iter().enumerate().map(|(k, [c, w])| out.residual[count + k].powi(2) * c / w);
+        let of_row = |(k, row): (usize, &Row)| out.residual[count + k].powi(2) * row.trial / row.area;
+        let rows = self.rows.iter().enumerate().map(of_row);
         let lacks = out.single.iter().chain(&out.coupled).map(|h| {
             // The unknowns give way together: springs in a row.
             let gives_way = |(unknown, factor): &(u32, f64)| factor * factor / self.scales[*unknown as usize];
@@ -263,10 +265,10 @@ impl Equations for Problem<'_> {
             let kind = usize::from(self.is_spin[k]);
             take(out.residual[k].abs() / (TOLERANCE * scale[kind]).max(rounding[kind]), k);
         }
-        for (k, [c, w]) in self.rows.iter().enumerate() {
+        for (k, Row { stiffness, area, .. }) in self.rows.iter().enumerate() {
             // Gaps no better than the rounding of positions.
-            let force = out.residual[count + k].abs() * c;
-            let of_gap = c * w * GAP * size * away;
+            let force = out.residual[count + k].abs() * stiffness;
+            let of_gap = stiffness * area * GAP * size * away;
             take(force / (TOLERANCE * scale[0]).max(rounding[0]).max(of_gap), count + k);
         }
         for held in out.single.iter().chain(&out.coupled) {

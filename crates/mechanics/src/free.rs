@@ -335,7 +335,7 @@ impl Problem<'_> {
                         Err(_) => return error,
                     },
                 };
-                let rows = self.rows.iter().zip(moved.iter().skip(count)).map(|([c, _], f)| f * c);
+                let rows = self.rows.iter().zip(moved.iter().skip(count)).map(|(row, f)| f * row.trial);
                 if moved[..count].iter().copied().chain(rows).all(|f| f.abs() <= 1e-10 * largest * size) {
                     let axis = ["x", "y", "z"][mode % 3];
                     let motion =

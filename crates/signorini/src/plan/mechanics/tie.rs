@@ -30,6 +30,9 @@ impl Planner<'_> {
         // What deforms is the slave.
         let is_rigid = |part: &Part| matches!(kinds[part.body], Kind::Rigid { .. });
         let [slave, master] = if is_rigid(slave) { [master, slave] } else { [slave, master] };
+        // Gaps turn with the faces of a solid, which finite cells do not have.
+        let on_cells = matches!((&kinds[slave.body], &kinds[master.body]), (Kind::Solid, Kind::Cells));
+        let [slave, master] = if on_cells { [master, slave] } else { [slave, master] };
         let fits = |part: &&Part| matches!(kinds[part.body], Kind::Solid | Kind::Cells | Kind::Rigid { .. });
         let body = |part: &Part| system.bodies[part.body].as_ref();
         if let Some(part) = [slave, master].into_iter().find(|part| !fits(part)) {

@@ -261,28 +261,36 @@ pub(super) fn polygons<const D: usize>(cut: Cut<'_, D>, face: usize, candidates:
             }
         }
     }
-    if may_hide(slave, face, &points) {
+    if let Some(apart) = hidden_by(slave, face, &points) {
         // Masters lie behind each other: of those on a line the nearest counts.
-        points.retain(|p| !is_hidden(cut, face, candidates, p));
+        points.retain(|p| !is_hidden(cut, face, (candidates, apart), p));
     }
     points
 }
 
-/// Whether masters may lie behind each other: points stand for more than the face, or their gaps differ by its size.
-fn may_hide<const D: usize>(slave: &dyn ContactSurface<D>, face: usize, points: &[GapPoint<D>]) -> bool {
+/// How much nearer a master is at least that hides another one, if masters may lie behind each other: by anything where points
+/// stand for more than the face, by the size of the face where gaps differ by that. What is less may be the same surface, beyond
+/// the border of a curved face.
+fn hidden_by<const D: usize>(slave: &dyn ContactSurface<D>, face: usize, points: &[GapPoint<D>]) -> Option<f64> {
+    let of = |s: &Local| slave.at(face, s).area_normal().norm() * slave.measure(&slave.at(face, s).x);
+    let rule = rule(slave.shape(face), slave.degree(face).max(slave.order(face)) + 3);
+    let area: f64 = rule.iter().map(|(s, w)| w * of(s)).sum();
+    if points.iter().map(|p| p.weight).sum::<f64>() > area * (1.0 + 1e-6) {
+        return Some(0.0);
+    }
     let corners = slave.shape(face).vertices();
     let size = (slave.at(face, &corners[1]).x - slave.at(face, &corners[0]).x).norm();
-    let ends = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p.gap), h.max(p.gap)]);
-    ends[1] - ends[0] > size || {
-        let of = |s: &Local| slave.at(face, s).area_normal().norm() * slave.measure(&slave.at(face, s).x);
-        let rule = rule(slave.shape(face), slave.degree(face).max(slave.order(face)) + 3);
-        let area: f64 = rule.iter().map(|(s, w)| w * of(s)).sum();
-        points.iter().map(|p| p.weight).sum::<f64>() > area * (1.0 + 1e-6)
-    }
+    let [low, high] = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p.gap), h.max(p.gap)]);
+    (high - low > size).then_some(size)
 }
 
 /// Whether another face of the master is on the line of a point, and nearer.
-fn is_hidden<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize], point: &GapPoint<D>) -> bool {
+fn is_hidden<const D: usize>(
+    cut: Cut<'_, D>,
+    face: usize,
+    (candidates, apart): (&[usize], f64),
+    point: &GapPoint<D>,
+) -> bool {
     let Cut { slave, master, sight, .. } = cut;
     let x = slave.at(face, &point.s).x;
     let n = -point.direction;
@@ -296,7 +304,7 @@ fn is_hidden<const D: usize>(cut: Cut<'_, D>, face: usize, candidates: &[usize],
             eta[0].abs().max(eta[1].abs()) < 1.0 + 1e-9
         };
         // Faces that meet have the same gap along their edge.
-        let nearer = point.gap.abs() - gap.abs() > 1e-6 * (point.gap.abs() + gap.abs());
+        let nearer = point.gap.abs() - gap.abs() > apart.max(1e-6 * (point.gap.abs() + gap.abs()));
         within && nearer && sight.includes(face, gap) && master.at(m, &eta).area_normal().normalize().dot(&n) < FACING
     })
 }

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// A body that others may not reach into.
 pub enum Obstacle<'a> {
     Rigid { body: &'a Rigid, motion: RigidMotion },
-    Solid(SolidNow<'a>),
+    Solid(Box<SolidNow<'a>>),
 }
 
 /// What a point finds.
@@ -43,7 +43,7 @@ impl<'a> Obstacle<'a> {
     pub fn new(form: &'a Form, placement: &'a Placement, in_space: bool) -> Option<Self> {
         match form {
             Form::Rigid(body) => Some(Obstacle::Rigid { body, motion: placement.motion() }),
-            Form::Solid(solid) => Some(Obstacle::Solid(SolidNow::new(solid, placement.points(), in_space))),
+            Form::Solid(solid) => Some(Obstacle::Solid(Box::new(SolidNow::new(solid, placement.points(), in_space)))),
             Form::Curve(_) => None,
         }
     }

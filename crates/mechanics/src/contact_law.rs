@@ -71,7 +71,7 @@ pub(crate) struct PointHistory {
 /// The scales of the equation of a multiplier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
-    /// Traction per gap, of the trial and of the cells.
+    /// Traction per gap, of the trial, and of one that is as stiff as cells.
     pub trial: f64,
     pub stiffness: f64,
     /// That the point stands for.
@@ -204,7 +204,7 @@ impl ContactLaw {
 
     /// The scales of the equation of each unknown.
     pub(crate) fn rows(&self) -> impl Iterator<Item = Row> {
-        let (slots, scale) = (self.slots(), self.trial_scale());
+        let (slots, scale) = (self.slots(), self.scale);
         let rows = self.stiffness.iter().zip(&self.areas);
         rows.flat_map(move |(c, w)| slots.iter().map(move |_| Row { trial: *c, stiffness: c / scale, area: *w }))
     }

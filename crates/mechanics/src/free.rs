@@ -84,7 +84,7 @@ impl System {
     /// How far bodies with a prescribed motion are displaced in the increment that has begun.
     fn prescribed_travel(&self) -> f64 {
         let Some([last, now]) = self.contacts.first().map(|contact| contact.law().times) else { return 0.0 };
-        let of = |body: &Box<dyn Body>| {
+        let of = |body: &dyn Body| {
             let [from, to] = [last, now].map(|time| {
                 let mut state = body.start();
                 body.prescribe(time, &mut state);
@@ -92,7 +92,7 @@ impl System {
             });
             from.iter().zip(&to).take(3).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
         };
-        self.bodies.iter().filter(|body| body.is_rigid()).map(of).fold(0.0, f64::max)
+        self.bodies.iter().map(Box::as_ref).filter(|body| body.is_rigid()).map(of).fold(0.0, f64::max)
     }
 
     /// Whether there is friction.

@@ -72,7 +72,7 @@ pub struct TieFindings {
 /// Where tractions are.
 enum Sampled {
     /// At nodes of the slave faces, by mortar.
-    Mortar { nodes: Nodes, search: Search, places: Vec<(usize, Local)> },
+    Mortar { nodes: Nodes, search: Box<Search>, places: Vec<(usize, Local)> },
     /// At sites.
     Sites(Vec<Site>),
 }
@@ -239,7 +239,7 @@ impl<'a> Start<'a> {
         let stiffness = places.iter().map(|(face, _)| surface.stiffness(*face)).collect();
         let facing = Facing::new((part, body), surface.as_ref(), (other_part, other))?;
         let search = Search { reach: 0.0, extra: 0, facing, at_rest: true };
-        Ok((Sampled::Mortar { nodes, search, places }, stiffness, size.unwrap_or(0.0)))
+        Ok((Sampled::Mortar { nodes, search: Box::new(search), places }, stiffness, size.unwrap_or(0.0)))
     }
 
     fn unknowns_of_rigid(&self) -> [Option<u32>; 6] {

@@ -209,11 +209,6 @@ impl ContactLaw {
         rows.flat_map(move |(c, w)| slots.iter().map(move |_| Row { trial: *c, stiffness: c / scale, area: *w }))
     }
 
-    /// The scale of trials now, relative to the stiffness of cells.
-    fn trial_scale(&self) -> f64 {
-        self.scale * if self.is_soft { SOFTER } else { 1.0 }
-    }
-
     /// The unknowns of all points as at the last state.
     pub(crate) fn multipliers(&self) -> Vec<f64> {
         self.kept.iter().flat_map(|kept| self.slots().iter().map(|slot| kept[*slot])).collect()
@@ -298,7 +293,7 @@ impl ContactLaw {
     ) {
         let scale = self.areas[k] / self.stiffness[k];
         // Tractions that nothing determines stay where they are.
-        let resists = if projected.is_some() { 1.0 + UNDETERMINED * self.trial_scale() } else { 1.0 };
+        let resists = if projected.is_some() { 1.0 + UNDETERMINED * self.scale } else { 1.0 };
         let projected = projected.copied().unwrap_or_default();
         for (i, &slot) in (0u32..).zip(self.slots()) {
             let traction = projected.traction[slot];

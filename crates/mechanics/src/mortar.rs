@@ -15,7 +15,7 @@
 //! apart along the surface: zero in a rigid motion of both sides, and without derivatives of projections.
 //!
 //! The tangent is exact but for the ends of the covered part: where the cuts within it move, the integrand does not jump.
-//! A surface in contact with itself has both roles, each face one of them ([`within`]).
+//! A surface in contact with itself has both roles, each face one of them (`mortar/within.rs`).
 //!
 //! A rigid master is tested at the points of a rule on whole slave faces.
 

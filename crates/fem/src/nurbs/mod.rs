@@ -1,6 +1,6 @@
 //! Patches of rational B-splines (NURBS), of which the spans between knots are the cells of a mesh.
 //!
-//! - [`line`]: knots of one direction, and the functions on their spans.
+//! - [`mod@line`]: knots of one direction, and the functions on their spans.
 //! - [`join`]: which control points and vertices of different patches are the same.
 //! - [`build`]: the mesh.
 

@@ -105,10 +105,15 @@ impl<'a> SolidNow<'a> {
 
     /// Whether a point lies in a cell, other than those that are left out.
     fn is_in(&self, x: &Point<3>, except: Option<(Point<3>, f64)>) -> bool {
+        self.is_in_cells((&self.cells, self.points), x, &|cell| self.is_beside(cell, except))
+    }
+
+    /// The same with the cells where their points are now or were, but for those that are left out.
+    fn is_in_cells(&self, (tree, points): (&Bvh, &[Point<3>]), x: &Point<3>, out: &dyn Fn(&[u32]) -> bool) -> bool {
         let mut inside = false;
-        self.cells.nearest(x, 0.0, |k| {
+        tree.nearest(x, 0.0, |k| {
             let cell = &self.solid.cells[k];
-            inside = inside || (!self.is_beside(cell, except) && self.cell_holds(self.points, cell, x));
+            inside = inside || (!out(cell) && self.cell_holds(points, cell, x));
             0.0
         });
         inside
@@ -131,12 +136,8 @@ impl<'a> SolidNow<'a> {
         let (list, rest) = (&self.solid.boundary.facets[facet], &self.solid.rest[..]);
         let Some(normal) = area_normal(rest, list).try_normalize(0.0) else { return true };
         let beyond = self.solid.boundary.centre(rest, facet) + normal * (1e-3 * extent(rest, list));
-        let mut within = false;
-        self.at_rest.get_or_init(|| boxes(rest, &self.solid.cells)).nearest(&beyond, 0.0, |k| {
-            within = within || self.cell_holds(rest, &self.solid.cells[k], &beyond);
-            0.0
-        });
-        within
+        let tree = self.at_rest.get_or_init(|| boxes(rest, &self.solid.cells));
+        self.is_in_cells((tree, rest), &beyond, &|_| false)
     }
 
     fn find(&self, x: &Point<3>, reach: f64, except: Option<(Point<3>, f64)>) -> Option<Found> {

@@ -43,6 +43,11 @@ impl CellMap {
         CellMap { shape, order, len, line: TensorBasis::new(order), rational: Some(basis) }
     }
 
+    /// Whether it is the polynomial map of a shape and order.
+    pub fn is_polynomial(&self, shape: CellShape, order: usize) -> bool {
+        self.shape() == shape && self.order() == order && self.rational().is_none()
+    }
+
     /// The functions of a spline, where they are such.
     pub fn rational(&self) -> Option<&Arc<RationalBasis>> {
         self.rational.as_ref()

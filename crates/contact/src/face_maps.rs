@@ -36,7 +36,7 @@ impl<const D: usize> FaceMaps<D> {
                     continue;
                 }
             };
-            let same = |m: &CellMap| m.shape() == shape && m.order() == order && m.rational().is_none();
+            let same = |m: &CellMap| m.is_polynomial(shape, order);
             let map = maps.iter().position(same).unwrap_or_else(|| {
                 maps.push(CellMap::new(shape, order));
                 maps.len() - 1

@@ -52,7 +52,7 @@ impl<const D: usize> PressureNodes<D> {
         for face in 0..surface.face_count() {
             let (shape, degree) = (surface.shape(face), surface.degree(face));
             let spline = surface.spline(face);
-            let same = |m: &CellMap| m.shape() == shape && m.order() == degree && m.rational().is_none();
+            let same = |m: &CellMap| m.is_polynomial(shape, degree);
             let found = if spline.is_some() { None } else { maps.iter().position(same) };
             let map = found.unwrap_or_else(|| {
                 maps.push(spline.map_or_else(|| CellMap::new(shape, degree), |spline| spline.map.clone()));

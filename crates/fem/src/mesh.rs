@@ -92,7 +92,7 @@ impl<const D: usize> Mesh<D> {
 
     /// Adds a cell with its nodes in the order of [`CellMap`].
     pub fn add_cell(&mut self, shape: CellShape, order: usize, nodes: &[u32]) -> u32 {
-        let same = |m: &CellMap| m.shape() == shape && m.order() == order && m.rational().is_none();
+        let same = |m: &CellMap| m.is_polynomial(shape, order);
         let found = self.maps.iter().position(same);
         let map = found.unwrap_or_else(|| {
             let map = CellMap::new(shape, order);

@@ -346,12 +346,12 @@ impl ContactLaw {
     }
 
     /// What [`restore_scales`](ContactLaw::restore_scales) goes on from: scales of trials, the time, and whether trials are soft.
-    pub(crate) fn scales(&self) -> impl Iterator<Item = f64> {
+    pub fn scales(&self) -> impl Iterator<Item = f64> {
         self.stiffness.iter().copied().chain([self.times[0], f64::from(self.is_soft)])
     }
 
     /// Takes what [`scales`](ContactLaw::scales) gave, and leaves what follows it; none of something else.
-    pub(crate) fn restore_scales<'a>(&mut self, numbers: &'a [f64]) -> Option<&'a [f64]> {
+    pub fn restore_scales<'a>(&mut self, numbers: &'a [f64]) -> Option<&'a [f64]> {
         let (stiffness, rest) = numbers.split_at_checked(self.stiffness.len())?;
         let ([time, soft], rest) = rest.split_first_chunk()?;
         self.stiffness.copy_from_slice(stiffness);
@@ -361,7 +361,7 @@ impl ContactLaw {
     }
 
     /// Makes trials soft or as stiff as they were, not those of penalties: whether that changed any.
-    pub(crate) fn make_trials(&mut self, soft: bool) -> bool {
+    pub fn make_trials(&mut self, soft: bool) -> bool {
         // Nitsche's method has its stiffness in the state, and a law that softens asks for one of its own.
         let softens = self.friction.as_ref().is_some_and(|law| law.least_scale() > 0.0);
         if self.is_soft == soft || self.enforcement.takes_stress() || self.kept.is_empty() || softens {

@@ -69,9 +69,7 @@ impl<const D: usize> Body<D> {
         }
         out
     }
-}
 
-impl<const D: usize> Body<D> {
     /// A side of the boundary as a span of a spline, where it is one.
     pub fn spline_face(&self, side: Side) -> Option<SplineFace<D>> {
         let cell = side.cell as usize;

@@ -5,12 +5,12 @@
 //! that are covered completely are then always the same.
 
 use super::facing::Facing;
-use super::within::{Sighting, Within};
+use super::within::Within;
 use crate::shown_surface::ShownSurface;
 use crate::surface::{Faces, Local, Surface};
 use signorini_contact::{
-    ContactSurface, GapPoint, MergedNode, Moved, PressureNodes, Sight, dual_weights_unmerged, pieces, segments, shares,
-    whole_faces,
+    ContactSurface, GapPoint, MergedNode, Moved, PressureNodes, Sight, Sighting, dual_weights_unmerged, pieces,
+    segments, shares, whole_faces,
 };
 use signorini_geometry::{Point, Vector};
 use std::collections::BTreeMap;

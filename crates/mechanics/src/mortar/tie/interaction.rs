@@ -188,6 +188,11 @@ impl Tie {
         projected
     }
 
+    /// The same of all nodes.
+    fn node_tractions(&self, found: &Found, multipliers: &[f64], linearises: bool) -> Vec<Projected> {
+        (0..self.weight.len()).map(|k| self.node_traction(found, k, multipliers, linearises)).collect()
+    }
+
     /// The unknown traction at a joint, times its area.
     fn traction_at(&self, joint: &Joint, tractions: &[[f64; 3]]) -> Vector<3> {
         let along = |axis: usize| self.shares(joint, axis).iter().map(|(k, s)| s * tractions[*k as usize][axis]).sum();
@@ -285,8 +290,7 @@ impl Interaction for Tie {
         let found = self.found(at, true)?;
         let linearises = out.tangent.is_some();
         let tractions = self.tractions(own.multipliers);
-        let projected: Vec<Projected> =
-            (0..self.weight.len()).map(|k| self.node_traction(&found, k, own.multipliers, linearises)).collect();
+        let projected = self.node_tractions(&found, own.multipliers, linearises);
         let slots = self.law.slots().len() as u32;
         for (k, projected) in projected.iter().enumerate() {
             let row = own.first + k as u32 * slots;
@@ -309,8 +313,7 @@ impl Interaction for Tie {
 
     fn results(&self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<Vec<SiteResult>, PlaceError> {
         let found = self.found(at, false)?;
-        let projected: Vec<Projected> =
-            (0..self.weight.len()).map(|k| self.node_traction(&found, k, own.multipliers, false)).collect();
+        let projected = self.node_tractions(&found, own.multipliers, false);
         let (places, normals) = self.places(&self.sides(at)?);
         let zones = match &self.sampled {
             Sampled::Mortar { nodes, .. } => {
@@ -344,9 +347,8 @@ impl Interaction for Tie {
 
     fn accept(&mut self, at: Bodies<'_>, own: InteractionUnknowns<'_>) -> Result<(), PlaceError> {
         let found = self.found(at, false)?;
-        let count = self.weight.len();
-        let tractions = (0..count).map(|k| self.node_traction(&found, k, own.multipliers, false).traction).collect();
-        self.law.accept(tractions);
+        let projected = self.node_tractions(&found, own.multipliers, false);
+        self.law.accept(projected.iter().map(|p| p.traction).collect());
         Ok(())
     }
 
@@ -359,9 +361,8 @@ impl Interaction for Tie {
     ) -> Result<f64, PlaceError> {
         let tractions = match self.law.takes_over() {
             true => {
-                let found = self.found(at, false)?;
-                let of = |k| self.node_traction(&found, k, own.multipliers, false).traction;
-                (0..self.weight.len()).map(of).collect()
+                let projected = self.node_tractions(&self.found(at, false)?, own.multipliers, false);
+                projected.iter().map(|p| p.traction).collect()
             }
             false => Vec::new(),
         };
@@ -369,18 +370,16 @@ impl Interaction for Tie {
     }
 
     fn history(&self) -> [Vec<f64>; 2] {
-        let scales = self.law.stiffness.iter().chain(&[self.law.times[0]]).copied().collect();
-        [self.law.kept.iter().flatten().copied().collect(), scales]
+        [self.law.kept.iter().flatten().copied().collect(), self.law.scales().collect()]
     }
 
     fn restore(&mut self, [kept, scales]: &[Vec<f64>; 2]) -> Result<(), NotItsHistory> {
-        let count = self.weight.len();
-        if kept.len() != 3 * count || scales.len() != count + 1 {
+        let is_own =
+            kept.len() == 3 * self.weight.len() && self.law.restore_scales(scales).is_some_and(<[f64]>::is_empty);
+        if !is_own {
             return Err(NotItsHistory { contact: self.name.clone() });
         }
         self.law.kept = kept.chunks(3).map(|t| [t[0], t[1], t[2]]).collect();
-        self.law.stiffness.copy_from_slice(&scales[..count]);
-        self.law.times = [scales[count]; 2];
         Ok(())
     }
 }

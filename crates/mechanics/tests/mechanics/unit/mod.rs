@@ -1,6 +1,7 @@
 //! Parts by themselves.
 
 mod admissible;
+mod contact_law;
 mod rigid_system;
 mod rotation;
 mod stability;

@@ -52,6 +52,7 @@ impl Planner<'_> {
             return Err(problem.error(key, message).help("make one rigid body of both, or one mesh"));
         }
         let by_mortar = matches!(kinds[slave.body], Kind::Solid) && !matches!(kinds[master.body], Kind::Cells);
+        let at_points = if matches!(kinds[slave.body], Kind::Cells) { "cell_surface" } else { "gauss_point" };
         let (sampling, enforcement, otherwise, word) = match &key.method {
             None if by_mortar => (None, None, Kept::Multiplier, "mortar"),
             Some(Method::Mortar(k)) if by_mortar => (None, k.enforcement.as_ref(), Kept::Multiplier, "mortar"),
@@ -62,13 +63,9 @@ impl Planner<'_> {
             }
             Some(Method::Node(k)) => (Some(Sampling::Nodes), k.enforcement.as_ref(), Kept::Multiplier, "node"),
             Some(Method::GaussPoint(k) | Method::CellSurface(k)) => {
-                let word = if matches!(kinds[slave.body], Kind::Cells) { "cell_surface" } else { "gauss_point" };
-                (Some(Sampling::GaussPoints), k.enforcement.as_ref(), Kept::AugmentedLagrangian, word)
+                (Some(Sampling::GaussPoints), k.enforcement.as_ref(), Kept::AugmentedLagrangian, at_points)
             }
-            None => {
-                let word = if matches!(kinds[slave.body], Kind::Cells) { "cell_surface" } else { "gauss_point" };
-                (Some(Sampling::GaussPoints), None, Kept::AugmentedLagrangian, word)
-            }
+            None => (Some(Sampling::GaussPoints), None, Kept::AugmentedLagrangian, at_points),
             Some(other) => {
                 return Err(problem
                     .error(other, "this method is not for ties")

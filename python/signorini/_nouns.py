@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '0946f847bd9037e4'
+SCHEMA = '2139584b28c2b89c'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -79,7 +79,8 @@ class Adhesion(Noun):
 class ArcLength(Noun):
     """Arc-length control.
 
-    size: Arc length of an increment. The area of the membrane and the duration of the step have length one.
+    size: Arc length of an increment. The duration of the step has length one; so have the area of the membrane,
+        and in a system the displacement that the step would come to if it went on as it begins.
     """
 
     _key = 'arc_length'

@@ -260,7 +260,7 @@ impl System {
     }
 
     /// What each unknown is measured by: the size of the bodies, or a radian.
-    fn extents(&self) -> Vec<f64> {
+    pub(crate) fn extents(&self) -> Vec<f64> {
         let size = self.size();
         self.is_spin().into_iter().map(|turns| if turns { 1.0 } else { size }).collect()
     }

@@ -81,6 +81,13 @@ impl Problem<'_> {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         self.begin(start)?;
+        let options = self.search(start);
+        let found = newton(self, start, &options, report);
+        self.converged(found)
+    }
+
+    /// How far steps from a state are followed.
+    pub(crate) fn search(&self, start: &SystemState) -> Newton {
         let predicts =
             self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
         // A step that turns material stretches it, and what is nearly incompressible takes that for a change of its volume: the step
@@ -94,8 +101,15 @@ impl Problem<'_> {
         } else {
             Search::Monotone
         };
-        let options = Newton { most_iterations: MOST_ITERATIONS, search };
-        let found = newton(self, start, &options, report).map_err(|failure| match failure {
+        Newton { most_iterations: MOST_ITERATIONS, search }
+    }
+
+    /// What Newton's method found, if it is near enough, or why it found nothing.
+    pub(crate) fn converged(
+        &self,
+        found: Result<Converged<SystemState>, NewtonFailure<SystemState, IncrementError>>,
+    ) -> Result<Converged<SystemState>, IncrementError> {
+        let found = found.map_err(|failure| match failure {
             NewtonFailure::NotConverged { history, .. } => {
                 IncrementError::NotConverged { history, worst: self.describe(self.worst) }
             }
@@ -118,7 +132,7 @@ impl Problem<'_> {
     }
 
     /// Measures residuals by the tangent of a state: further ones may be anywhere.
-    fn begin(&mut self, at: &SystemState) -> Result<(), IncrementError> {
+    pub(crate) fn begin(&mut self, at: &SystemState) -> Result<(), IncrementError> {
         let out = self.assemble(at, Order::Second)?;
         let count = self.is_spin.len();
         let sizes = self.system.row_sizes(&out, self.stiffness());
@@ -195,7 +209,7 @@ impl Problem<'_> {
     /// A ball without friction may turn, a block on a plane slide, a slack rope has no stiffness: a grain of it in the matrix
     /// alone keeps them where they are and changes no solution. `sizes` are those of the rows. Linear bodies that are condensed
     /// have one where contact changes them.
-    fn add_grain(&self, out: &mut Assembled, held: &[bool], sizes: &[f64]) {
+    pub(crate) fn add_grain(&self, out: &mut Assembled, held: &[bool], sizes: &[f64]) {
         let count = self.is_spin.len();
         let size = self.system.size();
         let mut most = [0.0f64; 2];

@@ -48,10 +48,10 @@ pub struct IncrementResult {
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
-const UNBALANCED: f64 = 1e-6;
+pub(crate) const UNBALANCED: f64 = 1e-6;
 /// Change of a traction by an outer iteration, relative to the largest, that ends them.
-const AUGMENTED: f64 = 1e-9;
-const MOST_AUGMENTATIONS: usize = 60;
+pub(crate) const AUGMENTED: f64 = 1e-9;
+pub(crate) const MOST_AUGMENTATIONS: usize = 60;
 
 /// How Newton's method goes.
 pub(crate) enum Strategy<'a> {
@@ -316,29 +316,8 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
-        let rows = self.contacts.iter().flat_map(|c| c.law().rows()).collect();
-        let stiffness = self.stiffness(start)?;
-        let mut problem = Problem {
-            system: self,
-            time,
-            stiffness,
-            solved: *solved,
-            inverses: Inverses::default(),
-            analysis: Analysis::default(),
-            symbolic: self.dissected(),
-            is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
-            springs: 0.0,
-            metric: Vec::new(),
-            goes_down: matches!(way, Strategy::Down),
-            held_back: None,
-            is_spin: self.is_spin(),
-            rows,
-            scales: Vec::new(),
-            first: None,
-            rounding: [0.0; 2],
-            gone: 0.0,
-            worst: 0,
-        };
+        let mut problem = self.problem(start, time, *solved)?;
+        problem.goes_down = matches!(way, Strategy::Down);
         let found = match way {
             Strategy::Straight => match problem.solve(start, report) {
                 // Newton's method may find a body far away, where it touches nothing, or on the other side of another, or one that
@@ -362,6 +341,38 @@ impl System {
         found
     }
 
+    /// The equations of a time, to be solved from a state.
+    pub(crate) fn problem(
+        &self,
+        start: &SystemState,
+        time: f64,
+        solved: Solved,
+    ) -> Result<Problem<'_>, IncrementError> {
+        let rows = self.contacts.iter().flat_map(|c| c.law().rows()).collect();
+        let stiffness = self.stiffness(start)?;
+        Ok(Problem {
+            system: self,
+            time,
+            stiffness,
+            solved,
+            inverses: Inverses::default(),
+            analysis: Analysis::default(),
+            symbolic: self.dissected(),
+            is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
+            springs: 0.0,
+            metric: Vec::new(),
+            goes_down: false,
+            held_back: None,
+            is_spin: self.is_spin(),
+            rows,
+            scales: Vec::new(),
+            first: None,
+            rounding: [0.0; 2],
+            gone: 0.0,
+            worst: 0,
+        })
+    }
+
     fn by_another_strategy(
         &self,
         problem: &mut Problem<'_>,
@@ -383,7 +394,7 @@ impl System {
     }
 
     /// What rounding of positions leaves of forces.
-    fn rounding(&self, state: &SystemState, time: f64) -> Result<f64, IncrementError> {
+    pub(crate) fn rounding(&self, state: &SystemState, time: f64) -> Result<f64, IncrementError> {
         let stiffness = self.stiffness(state)?;
         let at = self.assemble_with(state, time, Order::Second, stiffness)?;
         let (_, count) = self.numbering();
@@ -392,7 +403,7 @@ impl System {
     }
 
     /// What a state is reported as.
-    fn result(
+    pub(crate) fn result(
         &self,
         state: &SystemState,
         time: f64,

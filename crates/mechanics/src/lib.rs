@@ -15,9 +15,10 @@
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
 //! - [`stability`]: whether a state is stable, on what may move (`admissible`); `branch`: from an unstable state to a stable one.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
-//!   `free`), and outer iterations (`augmentation`); [`saved`]: what it goes on from.
+//!   `free`), and outer iterations (`augmentation`); `arc_length`: with the time as an unknown; [`saved`]: what it goes on from.
 
 mod admissible;
+mod arc_length;
 mod assembler;
 mod augmentation;
 pub mod body;
@@ -62,6 +63,7 @@ pub mod surface;
 pub mod system;
 mod unstable;
 
+pub use arc_length::{Path, PathIncrement};
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Hold, Kinematics, Load, Means, PlaceError, Samples, Slack, UnstableMaterial,

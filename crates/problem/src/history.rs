@@ -33,7 +33,8 @@ pub enum Control {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArcLength {
-    /// Arc length of an increment. The area of the membrane and the duration of the step have length one.
+    /// Arc length of an increment. The duration of the step has length one; so have the area of the membrane, and in a system the
+    /// displacement that the step would come to if it went on as it begins.
     pub size: f64,
 }
 

@@ -5,7 +5,7 @@ mod domain;
 mod files;
 mod head;
 mod height;
-mod history;
+pub(crate) mod history;
 pub(crate) mod located;
 pub mod mechanics;
 pub mod membrane;

@@ -19,19 +19,33 @@ fn plain(time: f64, step: f64) -> f64 {
     if rounded.is_finite() { rounded } else { time }
 }
 
+/// An increment along a path of equilibria of a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcLengthIncrement {
+    pub step: usize,
+    /// In the scales of the path.
+    pub length: f64,
+    /// Beginning and end of the step.
+    pub range: [f64; 2],
+}
+
 impl Planner<'_> {
-    /// The ends of all increments of a history in which time is given.
-    pub(super) fn times(&self) -> Result<Vec<f64>, CaseError> {
+    /// The increments of a system: their ends as far as they are known before, and the lengths of those along a path.
+    pub(super) fn system_increments(&self) -> Result<(Vec<f64>, Vec<Option<ArcLengthIncrement>>), CaseError> {
         for step in &self.problem.steps {
-            match &step.control {
-                None | Some(problem::Control::Time(_)) => {}
-                Some(control) => return Err(self.unavailable(control, "arc-length or area control of solids")),
+            if let Some(control @ problem::Control::Area(_)) = &step.control {
+                return Err(self.unavailable(control, "area control of solids"));
             }
         }
-        Ok(self.increments(0, &[])?.into_iter().map(|i| i.time).collect())
+        let of = |planned: &PlannedIncrement| match planned.control {
+            Control::ArcLength(length) => Some(ArcLengthIncrement { step: planned.step, length, range: planned.range }),
+            _ => None,
+        };
+        let planned = self.increments(0, &[])?;
+        Ok((planned.iter().map(|i| i.time).collect(), planned.iter().map(of).collect()))
     }
 
-    /// The increments of a membrane of a dimension, whose contacts have names.
+    /// The increments of a membrane of a dimension, whose contacts have names; of a system of the dimension 0.
     pub(super) fn increments(&self, dimension: usize, contacts: &[&str]) -> Result<Vec<PlannedIncrement>, CaseError> {
         let mut out = Vec::new();
         let mut t = 0.0;
@@ -94,7 +108,8 @@ impl Planner<'_> {
         parts: usize,
     ) -> Result<Control, CaseError> {
         let Some(control) = &key.control else { return Ok(Control::Time) };
-        if let (true, problem::Control::ArcLength(_) | problem::Control::Area(_)) = (contacts.is_empty(), control) {
+        let is_membrane = dimension > 0;
+        if is_membrane && contacts.is_empty() && !matches!(control, problem::Control::Time(_)) {
             return Err(self.problem.error(control, "the case has no contact to control"));
         }
         match control {
@@ -105,7 +120,7 @@ impl Planner<'_> {
                     return Err(self
                         .problem
                         .error(&arc.size, format!("an increment of {size} is not between {SHORTEST} and 1"))
-                        .help("1 is the area of the membrane, or the duration of the step; 0.02 is a good start"));
+                        .help("1 is the area of the membrane or the extent of the bodies, and the duration of the step; 0.02 is a good start"));
                 }
                 Ok(Control::ArcLength(size))
             }

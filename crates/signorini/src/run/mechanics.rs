@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod frame;
+mod path;
 pub(crate) mod recovered;
 mod report;
 mod warnings;
@@ -19,6 +20,7 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::{CaseError, Space};
 use crate::report::{ForceBounds, Reason, StepReport};
 use frame::{Frame, take};
+use path::OnPath;
 use serde_json::{Value, json};
 use signorini_audit::Finding;
 use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
@@ -44,6 +46,8 @@ pub struct MechanicsModel {
     state: SystemState,
     last: Option<SystemShown>,
     film: Film<Frame>,
+    /// Where it stands in a step by arc length.
+    path: OnPath,
     /// Whether the state at t = 0 is that of rest.
     rests: bool,
     /// Why there is no state after it.
@@ -71,6 +75,7 @@ impl MechanicsModel {
             state,
             last: None,
             film,
+            path: OnPath::default(),
             rests,
             failure: None,
             result: IncrementResult::default(),
@@ -135,9 +140,7 @@ impl MechanicsModel {
                         let history = residuals;
                         let mut found =
                             IncrementResult { iterations, history, dissipated, dissipated_in_bodies, ..result };
-                        let of_contacts = found.sites.iter_mut().zip(&self.plan.contacts);
-                        let at_nodes = of_contacts.filter(|(_, tested)| tested.at_nodes);
-                        at_nodes.for_each(|(sites, _)| recovered::recover(sites));
+                        recovered::recover_at_nodes(&self.plan, &mut found);
                         return Ok(Ok(found));
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
@@ -215,10 +218,14 @@ impl MechanicsModel {
                 Reason::Newton,
                 format!(
                     "{error}; residuals of the last iterations, relative to the tolerance: {}; use more \
-                     increments{}{}",
+                     increments{}{}{}",
                     history(list),
                     if has(|kind| !matches!(kind, Kind::Rigid { .. })) { ", or more cells" } else { "" },
                     if has_ropes { ", or a pretension where a rope is slack" } else { "" },
+                    match self.plan.system.bodies.iter().any(|b| !b.is_rigid() && !b.is_linear()) {
+                        true => ", or `control.arc_length` where the state may snap through",
+                        false => "",
+                    },
                 ),
             ),
             IncrementError::PassesThrough { .. } | IncrementError::Inside { .. } => {
@@ -293,11 +300,19 @@ impl Model for MechanicsModel {
         record: &mut Record,
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError> {
-        let time = self.plan.times[index];
-        let before = if index == 0 { 0.0 } else { self.plan.times[index - 1] };
-        let result = match self.reach(index, [before, time], progress)? {
+        let before = if index == 0 { 0.0 } else { self.state.time };
+        let found = match self.plan.arc_lengths[index] {
+            Some(planned) => match self.follow(index, planned, progress)? {
+                Some(found) => found,
+                None => return Ok(Advanced::Nothing),
+            },
+            None => self.reach(index, [before, self.plan.times[index]], progress)?,
+        };
+        let time = self.state.time;
+        let result = match found {
             Ok(result) => result,
             Err(Failure { reason, text, residuals }) => {
+                let time = if self.plan.arc_lengths[index].is_some() { time } else { self.plan.times[index] };
                 record.steps.push(StepReport {
                     index,
                     time,
@@ -429,7 +444,7 @@ impl Model for MechanicsModel {
         let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
         Ok(Some(json!({
             "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "time": time, "contacts": contacts,
-            "audit": self.audit.save(),
+            "path": self.path, "audit": self.audit.save(),
         })))
     }
 
@@ -448,9 +463,8 @@ impl Model for MechanicsModel {
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
         self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
-        let time = next.checked_sub(1).map_or(0.0, |last| self.plan.times[last]);
-        self.state.time = time;
-        self.audit.restore(&state["audit"], &self.plan, &self.state, time);
+        self.path = take(&mut state["path"]).ok_or_else(|| checkpoint::damaged(folder))?;
+        self.audit.restore(&state["audit"], &self.plan, &self.state, self.state.time);
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! Published and exact problems, run as a user runs them: from the case file to the summary.
 
 mod adhesion;
+mod arc_length;
 mod architecture;
 mod audit;
 mod bad_input;

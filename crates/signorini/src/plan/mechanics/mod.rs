@@ -15,6 +15,7 @@ mod winches;
 pub use fields::Wrong;
 
 use super::head::Head;
+use super::history::ArcLengthIncrement;
 use super::memory::check_memory;
 use super::pieces::{Pieces, UNITE};
 use super::planner::Planner;
@@ -97,7 +98,10 @@ pub struct MechanicsPlan {
     pub system: System,
     /// Of each body of the system.
     pub kinds: Vec<Kind>,
+    /// The ends of all increments; of those along a path of equilibria as if time were given.
     pub times: Vec<f64>,
+    /// Of each increment, if it is along a path.
+    pub arc_lengths: Vec<Option<ArcLengthIncrement>>,
     pub probes: BTreeMap<String, Point<3>>,
     /// The point about which moments are told.
     pub moments_about: Point<3>,
@@ -215,7 +219,10 @@ impl Planner<'_> {
         system.prepare().map_err(|e| self.unprepared(&e))?;
         self.check_pieces(&pieces, &system)?;
         self.check_held(&system)?;
-        let times = self.times()?;
+        let (times, arc_lengths) = self.system_increments()?;
+        if arc_lengths.iter().any(Option::is_some) {
+            system.unstable = Unstable::Tell;
+        }
         for time in &times {
             system.check_supports(*time).map_err(|e| self.unprepared(&e.into()))?;
         }
@@ -252,6 +259,7 @@ impl Planner<'_> {
             system,
             kinds,
             times,
+            arc_lengths,
             probes,
             moments_about: match &problem.output.moments_about {
                 Some(at) => self.position(at, LENGTH)?,

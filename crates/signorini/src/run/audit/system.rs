@@ -355,11 +355,11 @@ fn load_work(system: &System, load: usize, states: [(&SystemState, f64); 2]) -> 
         return None;
     }
     let step: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
-    let power = |k: usize| -> Option<f64> {
-        let (state, time) = states[k];
-        let forces = system.load_forces(load, state, time).ok()?;
-        Some(forces.iter().zip(&step).map(|(f, s)| f * s).sum())
+    let forces = |(state, time)| system.load_forces(load, state, time).ok();
+    let (first, last) = (forces(states[0])?, forces(states[1])?);
+    let sum = |of: fn(f64, f64, f64) -> f64| -> f64 {
+        first.iter().zip(&last).zip(&step).map(|((a, b), moved)| of(*a, *b, *moved)).sum()
     };
-    let [first, last] = [power(0)?, power(1)?];
-    Some([0.5 * (first + last), 0.5 * (last - first).abs()])
+    // Parts of the body may move one after the other.
+    Some([sum(|a, b, moved| 0.5 * (a + b) * moved), sum(|a, b, moved| 0.5 * ((b - a) * moved).abs())])
 }

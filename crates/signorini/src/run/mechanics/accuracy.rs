@@ -111,7 +111,9 @@ pub fn estimate(
     let share = if solved == Solved::Condensed && !cuts { 1.0 } else { FACTORISED[usize::from(in_space)] };
     let affordable = share * AFFORDABLE;
     let work = (unknowns * plan.times.len()) as f64;
-    if plan.system.contacts.is_empty() || work > affordable {
+    // Finer functions come to other states along a path.
+    let on_path = plan.arc_lengths.iter().any(Option::is_some);
+    if plan.system.contacts.is_empty() || on_path || work > affordable {
         return;
     }
     let most = (affordable / work).powf(if in_space { 1.0 / 3.0 } else { 0.5 });

@@ -5,11 +5,18 @@
 //! on it and its neighbours over their area, weighted by a hat of twice the distance to the nearest of them, which takes
 //! alternating parts of equal distances out.
 
+use crate::plan::mechanics::MechanicsPlan;
 use signorini_contact::Status;
-use signorini_mechanics::{OfSurface, SiteResult};
+use signorini_mechanics::{IncrementResult, OfSurface, SiteResult};
 
 /// Half the width of a hat, in distances to the nearest node.
 const REACH: f64 = 2.0;
+
+/// Recovers the pressures of all contacts that are tested at nodes.
+pub fn recover_at_nodes(plan: &MechanicsPlan, result: &mut IncrementResult) {
+    let of_contacts = result.sites.iter_mut().zip(&plan.contacts);
+    of_contacts.filter(|(_, tested)| tested.at_nodes).for_each(|(sites, _)| recover(sites));
+}
 
 /// Recovers the pressures of the nodes of a surface.
 pub fn recover(sites: &mut [SiteResult]) {

@@ -11,7 +11,7 @@ use signorini_contact::Status;
 use signorini_mechanics::{IncrementResult, SiteResult, UnstableMaterial};
 
 /// Warns of states that are not stable, and of those that were left.
-fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
+fn warn_of_stability(told: &StabilityReport, (time, on_path): (f64, bool), record: &mut Record) {
     let Some(body) = &told.body else { return };
     let when = told.critical_time.map_or(String::new(), |t| format!(", at t = {t:.6}"));
     let message = if told.stable {
@@ -22,10 +22,11 @@ fn warn_of_stability(told: &StabilityReport, time: f64, record: &mut Record) {
     } else {
         let count = told.negative_eigenvalues;
         let plural = if count == 1 { "" } else { "s" };
-        format!(
-            "`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; with `stability = \
-             \"follow\"` a stable state is computed"
-        )
+        let remedy = match on_path {
+            true => "under a load that follows the time alone the path ends at the fold before it",
+            false => "with `stability = \"follow\"` a stable state is computed",
+        };
+        format!("`{body}` is unstable at t = {time}{when}: {count} negative eigenvalue{plural}; {remedy}")
     };
     record.warn_once(Warning::new(WarningKind::Unstable, message).at_time(time));
 }
@@ -75,7 +76,8 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
     let time = shown.time;
     warn_of_closing(plan, [before, result], time, record);
     if let Some(told) = &result.stability {
-        warn_of_stability(&stability_report(&plan.system, told), time, record);
+        let on_path = plan.arc_lengths.iter().any(Option::is_some);
+        warn_of_stability(&stability_report(&plan.system, told), (time, on_path), record);
     }
     for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
         let by_mortar = tested.method == "mortar";

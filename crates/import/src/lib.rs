@@ -1,4 +1,4 @@
-//! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`).
+//! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`), and meshes of VTK (`.vtu`).
 //!
 //! A deck is read into plain types ([`Deck`]): mesh, sets, materials, supports, loads, contacts and steps. From these the
 //! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). A keyword that is not known is an error
@@ -14,16 +14,17 @@ mod error;
 mod feb;
 mod inp;
 pub mod mesh;
+mod vtu;
 
 pub use deck::{Deck, Remark};
 pub use error::ImportError;
 
 use std::path::Path;
 
-/// The kinds of files that are decks, by their extension.
-pub const EXTENSIONS: [&str; 2] = ["inp", "feb"];
+/// The kinds of files whose meshes are read, by their extension.
+pub const EXTENSIONS: [&str; 3] = ["inp", "feb", "vtu"];
 
-/// Whether the name of a file is that of a deck.
+/// Whether the name of a file is that of a deck or mesh.
 pub fn is_deck(file: &Path) -> bool {
     extension(file).is_some_and(|e| EXTENSIONS.contains(&e.as_str()))
 }
@@ -59,6 +60,12 @@ fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
     match extension(file).as_deref() {
         Some("inp") => inp::read(file, what),
         Some("feb") => feb::read(file, what),
+        Some("vtu") if what == What::Mesh => vtu::read(file),
+        Some("vtu") => Err(ImportError::new(
+            file,
+            None,
+            "a .vtu file holds a mesh and nothing else: name it in a case, as mesh.file = { file = \"NAME.vtu\" }",
+        )),
         _ => Err(ImportError::new(
             file,
             None,

@@ -20,6 +20,7 @@
 mod admissible;
 mod assembler;
 mod augmentation;
+mod axes;
 pub mod body;
 mod branch;
 pub mod condensed;
@@ -62,6 +63,7 @@ pub mod surface;
 pub mod system;
 mod unstable;
 
+pub use axes::Axes;
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Hold, Kinematics, Load, Means, PlaceError, Samples, Slack, UnstableMaterial,

@@ -83,7 +83,14 @@ pub(super) fn boundary(file: &File, section: Node, curves: &Curves, deck: &mut D
             }
         }
         if displacement.iter().any(Option::is_some) {
-            deck.supports.push(Support { on: on(deck)?, displacement, tied: [false; 3], from: None, until: None });
+            deck.supports.push(Support {
+                on: on(deck)?,
+                displacement,
+                axes: None,
+                tied: [false; 3],
+                from: None,
+                until: None,
+            });
         }
     }
     Ok(())

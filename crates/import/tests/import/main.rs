@@ -4,6 +4,7 @@ mod curves;
 mod feb;
 mod inp;
 mod mesh;
+mod vtu;
 
 use signorini_import::{Deck, ImportError, case, read};
 use std::path::PathBuf;

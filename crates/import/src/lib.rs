@@ -14,7 +14,9 @@ mod error;
 mod feb;
 mod inp;
 pub mod mesh;
+mod paths;
 mod vtu;
+mod xml;
 
 pub use deck::{Deck, Remark};
 pub use error::ImportError;
@@ -49,6 +51,19 @@ pub fn read_mesh(file: &Path) -> Result<Deck, ImportError> {
     read_as(file, What::Mesh)
 }
 
+/// The case of a file of another program, as TOML: of a deck, or of a model of paths. `way` is the path of the file from the folder
+/// of the case; with `keeps_stiffness` linear stiffnesses of contacts are kept as compliances.
+///
+/// # Errors
+/// What [`read`] and [`case::text`] refuse, and models of which nothing can be imported.
+pub fn case_text(file: &Path, way: &str, keeps_stiffness: bool) -> Result<String, ImportError> {
+    match extension(file).as_deref() {
+        Some("xml") => paths::read_mjcf(file),
+        Some("osim") => paths::read_osim(file),
+        _ => case::text(&Deck { keeps_stiffness, ..read(file)? }, way),
+    }
+}
+
 /// What is read of a deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
@@ -69,7 +84,7 @@ fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
         _ => Err(ImportError::new(
             file,
             None,
-            "not a deck: expected a file named .inp (CalculiX, Abaqus) or .feb (FEBio)",
+            "cannot be imported: expected a file named .inp (CalculiX, Abaqus), .feb (FEBio), .xml (MuJoCo) or .osim (OpenSim)",
         )),
     }
 }

@@ -37,7 +37,10 @@ impl Writer<'_> {
                         .map(|c| c.as_ref().map_or("\"free\"".to_string(), |c| self.values.value(c)))
                         .collect();
                     let _ = writeln!(out, "displacement = [{}]", list.join(", "));
-                    if let Some(axes) = &support.axes {
+                    // What is held in all directions has no need of axes.
+                    let rests = |d: &Option<Curve>| d.as_ref().and_then(Curve::as_constant) == Some(0.0);
+                    let is_fixed = support.displacement[..dimension].iter().all(rests);
+                    if let Some(axes) = support.axes.as_ref().filter(|_| !is_fixed) {
                         let _ = writeln!(out, "{}", axes_text(axes, dimension));
                     }
                 }

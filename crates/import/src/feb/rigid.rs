@@ -3,10 +3,10 @@
 use super::conditions::place;
 use super::curves::{Curves, value};
 use super::material::name_of;
-use super::xml::{File, child, children, text};
 use crate::ImportError;
 use crate::curve::Curve;
 use crate::deck::{Deck, RigidMotion, Support};
+use crate::xml::{File, child, children, text};
 use roxmltree::Node;
 
 /// The names of the components: displacements, then rotations.

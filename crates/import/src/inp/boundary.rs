@@ -2,6 +2,7 @@
 
 use crate::curve::{Curve, JUMP};
 use crate::deck::{Axes, Deck, Load, LoadKind, Place, Support};
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How a value changes within a step.
@@ -143,33 +144,27 @@ impl NodeHistories {
         groups.into_iter().map(place).collect()
     }
 
-    /// The supports of prescribed displacements, which hold until a time if one is given.
+    /// The supports of prescribed displacements, which hold until a time if one is given: one for each direction, so that sets of
+    /// nodes that overlap stay whole, with the faces that they contain.
     pub(super) fn supports(&self, deck: &Deck, axes: &BTreeMap<u64, Axes>, until: Option<f64>) -> Vec<Support> {
-        let mut times: Vec<f64> = self.begins.values().copied().collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let mut out = Vec::new();
-        for from in std::iter::once(None).chain(times.into_iter().map(Some)) {
-            let mut own = NodeHistories::default();
-            for (node, list) in &self.list {
-                for (direction, history) in list {
-                    if self.begins.get(&(*node, *direction)).copied() == from {
-                        own.list.entry(*node).or_default().insert(*direction, history.clone());
-                    }
-                }
+        let mut apart: BTreeMap<(OrderedTime, usize), NodeHistories> = BTreeMap::new();
+        for (node, list) in &self.list {
+            for (direction, history) in list {
+                let from = self.begins.get(&(*node, *direction)).copied();
+                let own = apart.entry((OrderedTime(from), *direction)).or_default();
+                own.list.entry(*node).or_default().insert(*direction, history.clone());
             }
+        }
+        let mut out = Vec::new();
+        for ((OrderedTime(from), _), own) in apart {
             let support = |(on, mut histories): (Place, BTreeMap<usize, (String, Curve)>)| {
-                let displacement: [Option<Curve>; 3] =
-                    std::array::from_fn(|d| histories.remove(&d).map(|(_, curve)| curve));
+                let displacement = std::array::from_fn(|d| histories.remove(&d).map(|(_, curve)| curve));
                 let node = match &on {
                     Place::NodeSet(name) => deck.node_sets.get(name).and_then(|(_, nodes)| nodes.first()),
                     Place::Nodes(_, nodes) => nodes.first(),
                     _ => None,
                 };
-                // What is held in all directions has no need of axes.
-                let is_held = |d: &Option<Curve>| d.as_ref().and_then(Curve::as_constant) == Some(0.0);
-                let all = displacement[..deck.space().dimension()].iter().all(is_held);
-                let axes = node.and_then(|node| axes.get(node)).filter(|_| !all).cloned();
+                let axes = node.and_then(|node| axes.get(node)).cloned();
                 Support { on, displacement, axes, tied: [false; 3], from, until }
             };
             out.extend(own.places(deck, axes).into_iter().map(support));
@@ -185,6 +180,24 @@ impl NodeHistories {
             Load { on, kind: LoadKind::NodalForce(force) }
         };
         self.places(deck, &BTreeMap::new()).into_iter().map(load).collect()
+    }
+}
+
+/// A time, or none before all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct OrderedTime(Option<f64>);
+
+impl Eq for OrderedTime {}
+
+impl Ord for OrderedTime {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.unwrap_or(f64::NEG_INFINITY).total_cmp(&other.0.unwrap_or(f64::NEG_INFINITY))
+    }
+}
+
+impl PartialOrd for OrderedTime {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
 }
 

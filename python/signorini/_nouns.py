@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '0946f847bd9037e4'
+SCHEMA = 'c59e35b61355c151'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -34,6 +34,7 @@ CHOICES = {
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
     'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
     'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays', 'nurbs': 'NurbsMesh'},
+    'SupportAxes': {'rectangular': '[[Value]]', 'cylindrical': 'CylindricalAxes'},
 }
 
 class ActiveSetMethod(Noun):
@@ -625,6 +626,27 @@ class Cylinder(Noun):
     ) -> None:
         self.point = point
         self.radius = radius
+        self.axis = axis
+
+
+class CylindricalAxes(Noun):
+    """The line about which axes turn.
+
+    point: A point of the line, lengths.
+    axis: Its direction, which is that of the third component. Left out in the plane, where the line is normal to
+        the plane.
+    """
+
+    _key = 'cylindrical'
+    _types = {'point': ('point', '[Value]'), 'axis': ('axis', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        point: Sequence[Value] | Array,
+        axis: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.point = point
         self.axis = axis
 
 
@@ -1470,9 +1492,9 @@ class MeshAxis(Noun):
 
 class MeshFile(Noun):
     """A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of
-    a deck are groups of the mesh.
+    a deck are groups of the mesh; so are the values of arrays of integers of a .vtu file, as `NAME=VALUE`.
 
-    file: A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    file: A .msh, .inp, .feb or .vtu file. The path is relative to the folder of the case.
     adjust: Nodes of a surface of a deck that are moved onto another of its surfaces, to close gaps of the mesh.
     connected_to: The number of a node of a deck: only the connected part that contains it forms the body.
     group: The set of elements, part or physical group that forms the body; all cells if left out.
@@ -2127,6 +2149,16 @@ class RectangleSection(Noun):
         self.height = height
 
 
+class Rectangular(Noun):
+    """The direction of the first axis, and in space one in the plane of the first two. Lengths have no influence."""
+
+    _key = 'rectangular'
+    _types = {'value': ('rectangular', '[[Value]]')}
+
+    def __init__(self, value: Sequence[Sequence[Value] | Array] | Array) -> None:
+        self.value = value
+
+
 class Refine(Noun):
     """Refinement of a grid in the plane: which cells are divided.
 
@@ -2537,6 +2569,7 @@ class Support(Noun):
     """A support: degrees of freedom that are fixed, prescribed or elastically supported.
 
     on: Body or group of a body: `BODY` or `BODY:GROUP`.
+    axes: The axes of the components of `displacement`, at the reference position; those of space if left out.
     displacement: Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free
         components.
     from_: Time from which the support holds: at later times only. From the start if left out.
@@ -2551,12 +2584,13 @@ class Support(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
+    _types = {'on': ('on', 'str'), 'axes': ('axes', '<SupportAxes>'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
 
     def __init__(
         self,
         *,
         on: str,
+        axes: Optional[Rectangular | CylindricalAxes | Sequence[Sequence[Value] | Array] | Array | Mapping[str, Any] | str] = None,
         displacement: Optional[Value | Sequence[Value] | Array] = None,
         from_: Optional[Value] = None,
         normal: Optional[Value] = None,
@@ -2566,6 +2600,7 @@ class Support(Noun):
         until: Optional[Value] = None,
     ) -> None:
         self.on = on
+        self.axes = axes
         self.displacement = displacement
         self.from_ = from_
         self.normal = normal
@@ -2945,4 +2980,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

@@ -1,7 +1,8 @@
 //! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`), and meshes of VTK (`.vtu`).
 //!
 //! A deck is read into plain types ([`Deck`]): mesh, sets, materials, supports, loads, contacts and steps. From these the
-//! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). A keyword that is not known is an error
+//! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). Paths of MuJoCo (`.xml`) and OpenSim (`.osim`)
+//! and lines of MoorDyn (`.txt`, `.dat`) become the text of a case at once ([`case_text`]). A keyword that is not known is an error
 //! with its line; what is left out or changed is a [`Remark`] of the deck.
 
 pub mod adjust;
@@ -14,6 +15,7 @@ mod error;
 mod feb;
 mod inp;
 pub mod mesh;
+mod moordyn;
 mod paths;
 mod vtu;
 mod xml;
@@ -60,6 +62,7 @@ pub fn case_text(file: &Path, way: &str, keeps_stiffness: bool) -> Result<String
     match extension(file).as_deref() {
         Some("xml") => paths::read_mjcf(file),
         Some("osim") => paths::read_osim(file),
+        Some("txt" | "dat") => moordyn::read(file),
         _ => case::text(&Deck { keeps_stiffness, ..read(file)? }, way),
     }
 }
@@ -84,7 +87,8 @@ fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
         _ => Err(ImportError::new(
             file,
             None,
-            "cannot be imported: expected a file named .inp (CalculiX, Abaqus), .feb (FEBio), .xml (MuJoCo) or .osim (OpenSim)",
+            "cannot be imported: expected a file named .inp (CalculiX, Abaqus), .feb (FEBio), .xml (MuJoCo), .osim (OpenSim), .txt or .dat \
+             (MoorDyn)",
         )),
     }
 }

@@ -1,6 +1,7 @@
 //! Where the joints of an OpenSim model put its bodies at the default values of the coordinates.
 
 use super::pose::{Pose, about, of_angles};
+use super::spline::{self, Ends};
 use crate::ImportError;
 use crate::xml::{File, child, text};
 use roxmltree::Node;
@@ -155,30 +156,21 @@ impl Values<'_, '_> {
                 Ok(numbers("coefficients")?.into_iter().fold(0.0, |sum, c| sum * q + c))
             }
             "MultiplierFunction" => Ok(numbers("scale")?.first().copied().unwrap_or(1.0) * self.of_parent(node, q)?),
-            "SimmSpline" | "PiecewiseLinearFunction" | "NaturalCubicSpline" | "GCVSpline" => {
+            "SimmSpline" | "NaturalCubicSpline" | "PiecewiseLinearFunction" => {
                 let (x, y) = (numbers("x")?, numbers("y")?);
-                if x.is_empty() || x.len() != y.len() || !x.is_sorted() {
-                    return Err(self.file.wrong(node, "expected as many ascending <x> as <y>"));
-                }
-                let size = (x[x.len() - 1] - x[0]).abs();
-                if let Some(k) = x.iter().position(|x| (x - q).abs() <= AT_A_POINT * size) {
-                    return Ok(y[k]);
-                }
-                if y.iter().all(|v| *v == y[0]) {
-                    return Ok(y[0]);
-                }
-                if node.tag_name().name() != "PiecewiseLinearFunction" {
-                    let message =
-                        format!("the default value {q} lies between its points: this spline is not evaluated here");
-                    return Err(self.file.wrong(node, message));
+                if x.len() != y.len() || x.len() < 2 || !x.is_sorted_by(|a, b| a < b) {
+                    return Err(self.file.wrong(node, "expected two or more ascending <x>, and as many <y>"));
                 }
                 let k = x.partition_point(|x| *x < q).clamp(1, x.len() - 1);
-                Ok(y[k - 1] + (y[k] - y[k - 1]) * (q - x[k - 1]) / (x[k] - x[k - 1]))
+                let linear = y[k - 1] + (y[k] - y[k - 1]) * (q - x[k - 1]) / (x[k] - x[k - 1]);
+                Ok(match node.tag_name().name() {
+                    "SimmSpline" => spline::value(&x, &y, Ends::Fitted, q),
+                    "NaturalCubicSpline" => spline::value(&x, &y, Ends::Natural, q),
+                    _ => None,
+                }
+                .unwrap_or(linear))
             }
             other => Err(self.file.wrong(node, format!("the function <{other}> does not exist here"))),
         }
     }
 }
-
-/// How far a value is from a point of a spline that it meets, over the length of the spline: numbers are written with nine digits.
-const AT_A_POINT: f64 = 1e-8;

@@ -6,6 +6,7 @@ mod joints;
 mod mjcf;
 mod osim;
 mod pose;
+mod spline;
 
 use crate::ImportError;
 use crate::case::names::Names;
@@ -125,6 +126,11 @@ impl Model {
             let why = if self.remarks.is_empty() { "it has none".into() } else { self.remarks.join("; ") };
             return Err(ImportError::new(file, None, format!("no path can be imported: {why}")));
         }
+        if self.paths.iter().all(|p| p.around.iter().all(Vec::is_empty)) {
+            let message =
+                "no path goes around a body: all are straight between their points, and nothing is to be solved";
+            return Err(ImportError::new(file, None, message));
+        }
         let mut out = String::new();
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let _ = writeln!(out, "# Imported from {name}, at the pose in which it is written.");
@@ -162,10 +168,14 @@ impl Model {
             };
             let parts: Vec<String> = path.around.iter().map(part).collect();
             match &parts[..] {
-                [one] if one != "[]" => drop(writeln!(out, "around = {one}")),
+                [one] if one != "[]" => {
+                    let _ = writeln!(out, "around = {one}");
+                }
                 [_] => {}
                 _ if path.around.iter().all(Vec::is_empty) => {}
-                many => drop(writeln!(out, "around = [{}]", many.join(", "))),
+                many => {
+                    let _ = writeln!(out, "around = [{}]", many.join(", "));
+                }
             }
         }
         Ok(out)

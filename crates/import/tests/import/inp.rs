@@ -263,19 +263,19 @@ fn transforms_are_axes_of_supports() {
     let sets = "*NSET, NSET=Around\n2, 3, 4, 6\n*NSET, NSET=Low\n1, 2, 3, 4\n*NSET, NSET=Both\n2, 3, 4, 6, 7, 1\n";
     let with =
         |kind: &str, points: &str| cubes(&format!("{sets}*TRANSFORM, NSET=Both, TYPE={kind}\n{points}\n"), steps);
-    let about = case_of("turned.inp", &with("C", "0, 0, 0, 0, 0, 1"));
-    assert!(about.contains("displacement = [\"free\", 0.0, \"free\"]\naxes.cylindrical = { point = [0.0, 0.0, 0.0], axis = [0.0, 0.0, 1.0] }"), "{about}");
-    for set in ["Around\"", "Low\""] {
+    let about = case_of("turned.inp", &with("C", "0, -1, 0, 0, -1, 1"));
+    assert!(about.contains("displacement = [\"free\", 0.0, \"free\"]\naxes.cylindrical = { point = [0.0, -1.0, 0.0], axis = [0.0, 0.0, 1.0] }"), "{about}");
+    for set in ["Around\"", "Low nodes\""] {
         assert!(about.contains(set), "{about}");
     }
-    // Node 7 is at (1, 1, 1): outwards 2 and around 1.
-    let found = deck("turned.inp", &with("C", "0, 0, 0, 0, 0, 1")).unwrap();
+    // Node 7 is at (1, 1, 1), outwards is (1, 2)/√5: 2 of it and 1 around.
+    let found = deck("turned.inp", &with("C", "0, -1, 0, 0, -1, 1")).unwrap();
     let force = found.loads.iter().find_map(|l| match &l.kind {
-        LoadKind::NodalForce(f) => Some(f.each_ref().map(|c| c.at(1.0) * 2f64.sqrt())),
+        LoadKind::NodalForce(f) => Some(f.each_ref().map(|c| c.at(1.0))),
         _ => None,
     });
     let [x, y, z] = force.unwrap();
-    assert!((x - 1.0).abs() < 1e-15 && (y - 3.0).abs() < 1e-15 && z == 0.0, "{x} {y} {z}");
+    assert!(x.abs() < 1e-15 && (y - 5f64.sqrt()).abs() < 1e-15 && z == 0.0, "{x} {y} {z}");
     let inclined = case_of("turned.inp", &with("R", "1, 1, 0, -1, 1, 0"));
     assert!(inclined.contains("axes.rectangular = [[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]"), "{inclined}");
     for (kind, points, told) in [

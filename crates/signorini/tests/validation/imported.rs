@@ -160,7 +160,8 @@ fn a_tube_held_along_cylindrical_axes() {
             low += &format!("{number}\n");
         }
     }
-    let [from, to] = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(turned).map(|x| format!("{:?}, {:?}, {:?}", x[0], x[1], x[2]));
+    let [from, to] =
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(turned).map(|x| format!("{:?}, {:?}, {:?}", x[0], x[1], x[2]));
     let pressed: String = (1..=n).map(|e| format!("{e}, P6, {pressure:?}\n")).collect();
     text += &format!(
         "*ELEMENT, TYPE=C3D20, ELSET=E\n{elements}*NSET, NSET=Cut\n{cut}*NSET, NSET=Low\n{low}*TRANSFORM, NSET=All, TYPE=C\n{from}, {to}
@@ -172,7 +173,8 @@ fn a_tube_held_along_cylindrical_axes() {
     std::fs::write(&deck, text).expect("written");
     let way = deck.display().to_string().replace('\\', "/");
     let mut case = signorini::import::case_text(&deck, &way, false).unwrap_or_else(|e| panic!("{e}"));
-    let places = [(a, 0.0), (a, 0.6), (a + 1.0 / 3.0, 0.3), (b, 0.9)].map(|(r, t): (f64, f64)| (r, [r * t.cos(), r * t.sin(), 0.0]));
+    let places = [(a, 0.0), (a, 0.6), (a + 1.0 / 3.0, 0.3), (b, 0.9)]
+        .map(|(r, t): (f64, f64)| (r, [r * t.cos(), r * t.sin(), 0.0]));
     for (k, (_, x)) in places.iter().enumerate() {
         case += if k == 0 { "\n[output.probes]\n" } else { "" };
         case += &format!("p{k} = {:?}\n", turned(*x));

@@ -43,7 +43,7 @@ struct Cell {
 
 fn points(piece: UnstructuredGridPiece, old: bool, deck: &mut Deck) -> Result<(), String> {
     let values = piece.points.cast_into::<f64>().unwrap_or_default();
-    if values.len() % 3 != 0 {
+    if !values.len().is_multiple_of(3) {
         return Err(format!("it has {} coordinates, expected three of each point", values.len()));
     }
     for (k, x) in values.chunks_exact(3).enumerate() {

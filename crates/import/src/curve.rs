@@ -59,6 +59,14 @@ impl Curve {
         (last[0] >= end && self.points[0][0] == 0.0 && self.points.iter().all(on_line)).then_some(slope)
     }
 
+    /// The sum of two curves, with the points of both.
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut times: Vec<f64> = self.points.iter().chain(&other.points).map(|p| p[0]).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        Self::through(times.into_iter().map(|t| [t, self.at(t) + other.at(t)]))
+    }
+
     pub fn scaled(&self, factor: f64) -> Self {
         Self { points: self.points.iter().map(|[t, v]| [*t, factor * v]).collect() }
     }

@@ -89,12 +89,57 @@ pub enum Place {
     All,
 }
 
+/// Axes of prescribed displacements.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Axes {
+    /// A point on the first axis, and one in the plane of the first two.
+    Rectangular([[f64; 3]; 2]),
+    /// A point of a line and its direction: components away from it, around it, along it.
+    Cylindrical { point: [f64; 3], axis: [f64; 3] },
+}
+
+impl Axes {
+    /// The unit vectors at a point; `None` where there are none.
+    pub fn at(&self, x: &[f64; 3]) -> Option<[[f64; 3]; 3]> {
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = |a: &[f64; 3], b: &[f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let unit = |a: [f64; 3], size: f64| {
+            let norm = dot(&a, &a).sqrt();
+            (norm > 1e-12 * size).then(|| a.map(|v| v / norm))
+        };
+        match self {
+            Axes::Rectangular([a, b]) => {
+                let size = (dot(a, a) * dot(b, b)).sqrt();
+                let (first, third) = (unit(*a, 0.0)?, unit(cross(a, b), size)?);
+                Some([first, cross(&third, &first), third])
+            }
+            Axes::Cylindrical { point, axis } => {
+                let axis = unit(*axis, 0.0)?;
+                let from: [f64; 3] = std::array::from_fn(|k| x[k] - point[k]);
+                let along = dot(&axis, &from);
+                let size = dot(x, x).sqrt() + dot(point, point).sqrt();
+                let first = unit(std::array::from_fn(|k| from[k] - along * axis[k]), size)?;
+                Some([first, cross(&axis, &first), axis])
+            }
+        }
+    }
+
+    pub fn is_that_of_space(&self) -> bool {
+        let space = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        matches!(self, Axes::Rectangular(_)) && self.at(&[0.0; 3]) == Some(space)
+    }
+}
+
 /// A support.
 #[derive(Clone, Debug)]
 pub struct Support {
     pub on: Place,
     /// Prescribed displacement of each direction, `None` where it is free.
     pub displacement: [Option<Curve>; 3],
+    /// The directions, those of space if none are given.
+    pub axes: Option<Axes>,
     /// Directions in which all nodes of the place have one unknown displacement.
     pub tied: [bool; 3],
     /// Times after which, and up to which it holds; always if none.

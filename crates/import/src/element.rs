@@ -9,6 +9,7 @@ pub enum Kind {
     Triangle6,
     Quadrilateral4,
     Quadrilateral8,
+    Quadrilateral9,
     Tetrahedron4,
     Tetrahedron10,
     Hexahedron8,
@@ -16,6 +17,7 @@ pub enum Kind {
     Hexahedron27,
     Wedge6,
     Wedge15,
+    Wedge18,
 }
 
 /// The space of a deck.
@@ -75,10 +77,10 @@ impl Kind {
     pub fn shape(self) -> &'static str {
         match self {
             Kind::Triangle3 | Kind::Triangle6 => "triangle",
-            Kind::Quadrilateral4 | Kind::Quadrilateral8 => "quadrilateral",
+            Kind::Quadrilateral4 | Kind::Quadrilateral8 | Kind::Quadrilateral9 => "quadrilateral",
             Kind::Tetrahedron4 | Kind::Tetrahedron10 => "tetrahedron",
             Kind::Hexahedron8 | Kind::Hexahedron20 | Kind::Hexahedron27 => "hexahedron",
-            Kind::Wedge6 | Kind::Wedge15 => "wedge",
+            Kind::Wedge6 | Kind::Wedge15 | Kind::Wedge18 => "wedge",
         }
     }
 
@@ -89,7 +91,9 @@ impl Kind {
             Kind::Triangle6 | Kind::Wedge6 => 6,
             Kind::Quadrilateral8 | Kind::Hexahedron8 => 8,
             Kind::Tetrahedron10 => 10,
+            Kind::Quadrilateral9 => 9,
             Kind::Wedge15 => 15,
+            Kind::Wedge18 => 18,
             Kind::Hexahedron20 => 20,
             Kind::Hexahedron27 => 27,
         }
@@ -112,9 +116,9 @@ impl Kind {
     pub fn edges(self) -> &'static [[usize; 2]] {
         match self {
             Kind::Hexahedron20 | Kind::Hexahedron27 => &HEXAHEDRON_MIDDLES,
-            Kind::Wedge15 => &WEDGE_MIDDLES,
+            Kind::Wedge15 | Kind::Wedge18 => &WEDGE_MIDDLES,
             Kind::Tetrahedron10 => &TETRAHEDRON_MIDDLES,
-            Kind::Quadrilateral8 => &QUADRILATERAL_MIDDLES,
+            Kind::Quadrilateral8 | Kind::Quadrilateral9 => &QUADRILATERAL_MIDDLES,
             Kind::Triangle6 => &TRIANGLE_MIDDLES,
             _ => &[],
         }
@@ -133,12 +137,23 @@ impl Kind {
 
     /// Nodes in the order of the deck, in that of Gmsh.
     pub fn reordered(self, nodes: &[u64]) -> Vec<u64> {
+        // FEBio has the sides around first.
+        self.with_middles(nodes, [24, 20, 23, 21, 22, 25, 26])
+    }
+
+    /// Nodes in the order of VTK, in that of Gmsh: like those of Abaqus, but for the sides, of which VTK has those across x first.
+    pub fn reordered_from_vtk(self, nodes: &[u64]) -> Vec<u64> {
+        self.with_middles(nodes, [24, 22, 20, 21, 23, 25, 26])
+    }
+
+    /// Nodes in the order of Gmsh; `middles` are those in the middle of the sides and of a hexahedron of 27 nodes.
+    fn with_middles(self, nodes: &[u64], middles: [usize; 7]) -> Vec<u64> {
         let vertices = self.vertex_count();
         let rest: Vec<usize> = match self {
             Kind::Hexahedron20 => HEXAHEDRON_EDGES.to_vec(),
-            // The nodes of the sides are the same, but for the order of the sides: FEBio has those around first.
-            Kind::Hexahedron27 => HEXAHEDRON_EDGES.into_iter().chain([24, 20, 23, 21, 22, 25, 26]).collect(),
+            Kind::Hexahedron27 => HEXAHEDRON_EDGES.into_iter().chain(middles).collect(),
             Kind::Wedge15 => WEDGE_EDGES.to_vec(),
+            Kind::Wedge18 => WEDGE_EDGES.into_iter().chain([15, 17, 16]).collect(),
             Kind::Tetrahedron10 => TETRAHEDRON_EDGES.to_vec(),
             other => (vertices..other.node_count()).collect(),
         };

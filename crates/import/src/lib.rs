@@ -1,7 +1,8 @@
-//! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`).
+//! Input decks of other programs: CalculiX and Abaqus (`.inp`), FEBio (`.feb`), and meshes of VTK (`.vtu`).
 //!
 //! A deck is read into plain types ([`Deck`]): mesh, sets, materials, supports, loads, contacts and steps. From these the
-//! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). A keyword that is not known is an error
+//! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). Paths of MuJoCo (`.xml`) and OpenSim (`.osim`)
+//! and lines of MoorDyn (`.txt`, `.dat`) become the text of a case at once ([`case_text`]). A keyword that is not known is an error
 //! with its line; what is left out or changed is a [`Remark`] of the deck.
 
 pub mod adjust;
@@ -14,16 +15,20 @@ mod error;
 mod feb;
 mod inp;
 pub mod mesh;
+mod moordyn;
+mod paths;
+mod vtu;
+mod xml;
 
 pub use deck::{Deck, Remark};
 pub use error::ImportError;
 
 use std::path::Path;
 
-/// The kinds of files that are decks, by their extension.
-pub const EXTENSIONS: [&str; 2] = ["inp", "feb"];
+/// The kinds of files whose meshes are read, by their extension.
+pub const EXTENSIONS: [&str; 3] = ["inp", "feb", "vtu"];
 
-/// Whether the name of a file is that of a deck.
+/// Whether the name of a file is that of a deck or mesh.
 pub fn is_deck(file: &Path) -> bool {
     extension(file).is_some_and(|e| EXTENSIONS.contains(&e.as_str()))
 }
@@ -48,6 +53,20 @@ pub fn read_mesh(file: &Path) -> Result<Deck, ImportError> {
     read_as(file, What::Mesh)
 }
 
+/// The case of a file of another program, as TOML: of a deck, or of a model of paths. `way` is the path of the file from the folder
+/// of the case; with `keeps_stiffness` linear stiffnesses of contacts are kept as compliances.
+///
+/// # Errors
+/// What [`read`] and [`case::text`] refuse, and models of which nothing can be imported.
+pub fn case_text(file: &Path, way: &str, keeps_stiffness: bool) -> Result<String, ImportError> {
+    match extension(file).as_deref() {
+        Some("xml") => paths::read_mjcf(file),
+        Some("osim") => paths::read_osim(file),
+        Some("txt" | "dat") => moordyn::read(file),
+        _ => case::text(&Deck { keeps_stiffness, ..read(file)? }, way),
+    }
+}
+
 /// What is read of a deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
@@ -59,10 +78,17 @@ fn read_as(file: &Path, what: What) -> Result<Deck, ImportError> {
     match extension(file).as_deref() {
         Some("inp") => inp::read(file, what),
         Some("feb") => feb::read(file, what),
+        Some("vtu") if what == What::Mesh => vtu::read(file),
+        Some("vtu") => Err(ImportError::new(
+            file,
+            None,
+            "a .vtu file holds a mesh and nothing else: name it in a case, as mesh.file = { file = \"NAME.vtu\" }",
+        )),
         _ => Err(ImportError::new(
             file,
             None,
-            "not a deck: expected a file named .inp (CalculiX, Abaqus) or .feb (FEBio)",
+            "cannot be imported: expected a file named .inp (CalculiX, Abaqus), .feb (FEBio), .xml (MuJoCo), .osim (OpenSim), .txt or .dat \
+             (MoorDyn)",
         )),
     }
 }

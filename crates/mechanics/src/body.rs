@@ -9,6 +9,7 @@ pub use crate::points::{
     SecondDerivative, Site, SlavePoint,
 };
 
+use crate::axes::Axes;
 use crate::curve::Curve;
 use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
@@ -53,8 +54,10 @@ pub type VectorField<'a> = &'a dyn Fn(&Point<3>) -> Vector<3>;
 /// How a place is held. Components that are free are `None`.
 #[derive(Default)]
 pub struct Hold<'a> {
-    /// Prescribed displacement.
+    /// Prescribed displacement, along the axes of space if no others are given.
     pub displacement: [Option<Field<'a>>; 3],
+    /// The axes of the components of the displacement.
+    pub axes: Option<Axes>,
     /// Prescribed rotation vector of the sections of a beam or of a rigid body, against the start.
     pub rotation: [Option<Field<'a>>; 3],
     /// Prescribed displacement along a unit vector.
@@ -67,12 +70,12 @@ impl Hold<'_> {
     /// Refuses what only solids can be held by.
     ///
     /// # Errors
-    /// A displacement along a direction, or components that are uniform.
+    /// A displacement along a direction or axes, or components that are uniform.
     pub fn check_components(&self, body: &str) -> Result<(), PlaceError> {
-        if self.along.is_none() && self.uniform == [false; 3] {
+        if self.along.is_none() && self.axes.is_none() && self.uniform == [false; 3] {
             return Ok(());
         }
-        let message = "only solids can be held along an inclined normal, or uniformly".to_string();
+        let message = "only solids can be held along an inclined normal or axes of their own, or uniformly".to_string();
         Err(PlaceError::Unsuitable { body: body.to_string(), message })
     }
 }

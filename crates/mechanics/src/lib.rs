@@ -21,6 +21,7 @@ mod admissible;
 mod arc_length;
 mod assembler;
 mod augmentation;
+mod axes;
 pub mod body;
 mod branch;
 pub mod condensed;
@@ -64,6 +65,7 @@ pub mod system;
 mod unstable;
 
 pub use arc_length::{Path, PathIncrement};
+pub use axes::Axes;
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Hold, Kinematics, Load, Means, PlaceError, Samples, Slack, UnstableMaterial,

@@ -4,6 +4,7 @@
 //! equations of supports that couple several unknowns. An unknown that a support prescribes by itself keeps its place;
 //! its equation says so, and its residual is the reaction.
 
+use crate::axes::Axes;
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_bodies::LinearBodies;
@@ -28,6 +29,8 @@ pub struct Support {
     pub part: Part,
     /// Prescribed components; what is free is `None`.
     pub displacement: [Option<TimeField>; 3],
+    /// The axes of these components, those of space if none are given.
+    pub axes: Option<Axes>,
     pub rotation: [Option<TimeField>; 3],
     /// Prescribed displacement along a unit vector.
     pub along: Option<(Vector<3>, TimeField)>,
@@ -64,6 +67,7 @@ impl Support {
         let along = self.along.as_ref().map(|(n, field)| (*n, at(field)));
         with(&Hold {
             displacement: displacement.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
+            axes: self.axes,
             rotation: rotation.each_ref().map(|f| f.as_ref().map(|f| f as &dyn Fn(&Point<3>) -> f64)),
             along: along.as_ref().map(|(n, f)| (*n, f as &dyn Fn(&Point<3>) -> f64)),
             uniform: self.uniform,

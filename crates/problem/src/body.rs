@@ -74,7 +74,8 @@ pub enum SolidMesh {
     Box(BoxMesh),
     /// A mesh from a file.
     Gmsh(GmshMesh),
-    /// A mesh from a file of Gmsh (`.msh`), CalculiX or Abaqus (`.inp`), or FEBio (`.feb`), by the ending of its name.
+    /// A mesh from a file of Gmsh (`.msh`), CalculiX or Abaqus (`.inp`), FEBio (`.feb`) or VTK (`.vtu`), by the ending of its
+    /// name.
     File(MeshFile),
     /// A mesh from arrays.
     Arrays(MeshArrays),
@@ -253,11 +254,11 @@ pub struct GmshMesh {
 }
 
 /// A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of a deck are
-/// groups of the mesh.
+/// groups of the mesh; so are the values of arrays of integers of a .vtu file, as `NAME=VALUE`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
-    /// A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    /// A .msh, .inp, .feb or .vtu file. The path is relative to the folder of the case.
     pub file: String,
     /// The set of elements, part or physical group that forms the body; all cells if left out.
     pub group: Option<String>,

@@ -24,6 +24,7 @@ pub mod problem_part;
 pub mod rigid;
 pub mod shape;
 pub mod source;
+mod support;
 mod tree;
 pub mod units;
 pub mod value;
@@ -48,6 +49,7 @@ pub use rigid::*;
 pub use shape::*;
 pub use signorini_expression::suggestion;
 pub use source::Source;
+pub use support::{CylindricalAxes, Support, SupportAxes, Tied};
 pub use value::{Components, Value};
 
 use schemars::JsonSchema;
@@ -296,39 +298,6 @@ pub struct Table {
     pub t: List<f64>,
     /// Function values, one for each argument.
     pub value: List<f64>,
-}
-
-/// A support: degrees of freedom that are fixed, prescribed or elastically supported.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Support {
-    /// Body or group of a body: `BODY` or `BODY:GROUP`.
-    pub on: String,
-    /// Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free components.
-    pub displacement: Option<Components>,
-    /// Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free components.
-    pub rotation: Option<List<Value>>,
-    /// Prescribed displacement along the outward normal; the tangential components are free.
-    pub normal: Option<Value>,
-    /// All points share one unknown displacement: in the components that are not prescribed, or in those that are true of a list
-    /// such as `[false, false, true]`.
-    pub tied: Option<Tied>,
-    /// Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
-    pub spring: Option<List<Value>>,
-    /// Time from which the support holds: at later times only. From the start if left out.
-    pub from: Option<Value>,
-    /// Time up to which the support holds, that time included. At later times the place is free. For ever if left out.
-    pub until: Option<Value>,
-}
-
-/// The components in which all points of a support share one unknown displacement.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Tied {
-    /// All that are not prescribed, or none.
-    All(bool),
-    /// Those that are true.
-    Components(List<bool>),
 }
 
 /// A load.

@@ -3,7 +3,7 @@
 use crate::commands::{DONE, report};
 use crate::console::{self, say};
 use serde_json::json;
-use signorini::import::{Deck, case, read};
+use signorini::import::case_text;
 use signorini::output::atomic;
 use signorini::problem::CaseError;
 use std::path::{Component, Path, PathBuf};
@@ -34,11 +34,9 @@ pub fn import(deck: &Path, output: Option<PathBuf>, keeps_stiffness: bool, json:
 
 /// The text of the case, which is written unless it goes to standard output.
 fn written(deck: &Path, output: &Path, keeps_stiffness: bool) -> Result<String, CaseError> {
-    let read = read(deck).map_err(|e| CaseError::new(e.to_string()))?;
-    let read = Deck { keeps_stiffness, ..read };
     let to_file = output != Path::new("-");
     let folder = if to_file { output.parent().unwrap_or(Path::new("")) } else { Path::new("") };
-    let text = case::text(&read, &way(folder, deck)).map_err(|e| CaseError::new(e.to_string()))?;
+    let text = case_text(deck, &way(folder, deck), keeps_stiffness).map_err(|e| CaseError::new(e.to_string()))?;
     if to_file {
         atomic::write(output, text.as_bytes()).map_err(|error| {
             CaseError::new(format!("cannot write `{}`: {error}", output.display()))

@@ -165,7 +165,8 @@ enum Command {
         /// The new folder (default: the template's name)
         folder: Option<PathBuf>,
     },
-    /// Write the case of an input deck of CalculiX or Abaqus (.inp) or FEBio (.feb)
+    /// Write the case of an input deck of CalculiX or Abaqus (.inp), FEBio (.feb), MuJoCo (.xml), OpenSim (.osim) or MoorDyn (.txt,
+    /// .dat)
     #[command(
         after_help = "Example:\n  signorini import deck.inp -o case.toml\n\nThe case refers to the deck for its mesh. What is left out or changed stands at its top. A deck that\nneeds what does not exist here is refused, with the line and the keyword."
     )]

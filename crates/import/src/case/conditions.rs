@@ -3,7 +3,7 @@
 use super::{Names, Writer, quoted};
 use crate::ImportError;
 use crate::curve::Curve;
-use crate::deck::{LoadKind, Place, RigidMotion, Support};
+use crate::deck::{Axes, LoadKind, Place, RigidMotion, Support};
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
 
@@ -37,6 +37,12 @@ impl Writer<'_> {
                         .map(|c| c.as_ref().map_or("\"free\"".to_string(), |c| self.values.value(c)))
                         .collect();
                     let _ = writeln!(out, "displacement = [{}]", list.join(", "));
+                    // What is held in all directions has no need of axes.
+                    let rests = |d: &Option<Curve>| d.as_ref().and_then(Curve::as_constant) == Some(0.0);
+                    let is_fixed = support.displacement[..dimension].iter().all(rests);
+                    if let Some(axes) = support.axes.as_ref().filter(|_| !is_fixed) {
+                        let _ = writeln!(out, "{}", axes_text(axes, dimension));
+                    }
                 }
                 if support.tied.contains(&true) {
                     let _ = writeln!(out, "tied = {:?}", &support.tied[..dimension]);
@@ -264,6 +270,21 @@ impl Writer<'_> {
     }
 }
 
+/// The axes of a support.
+fn axes_text(axes: &Axes, dimension: usize) -> String {
+    let vector = |v: &[f64; 3]| format!("{:?}", &v[..dimension]);
+    match axes {
+        Axes::Rectangular([a, _]) if dimension == 2 => format!("axes.rectangular = [{}]", vector(a)),
+        Axes::Rectangular([a, b]) => format!("axes.rectangular = [{}, {}]", vector(a), vector(b)),
+        Axes::Cylindrical { point, .. } if dimension == 2 => {
+            format!("axes.cylindrical = {{ point = {} }}", vector(point))
+        }
+        Axes::Cylindrical { point, axis } => {
+            format!("axes.cylindrical = {{ point = {}, axis = {} }}", vector(point), vector(axis))
+        }
+    }
+}
+
 /// Whether some component of a rigid body is free, or it turns.
 fn moves_freely(used: &[usize], motion: &RigidMotion) -> bool {
     let turns = |c: usize| c >= 3 && motion.components[c].as_ref().is_some_and(|v| v.as_constant() != Some(0.0));
@@ -277,6 +298,7 @@ fn merged(supports: &[Support]) -> Vec<Support> {
         let fits = |other: &&mut Support| {
             other.on == support.on
                 && (other.from, other.until) == (support.from, support.until)
+                && other.axes == support.axes
                 && (0..3).all(|k| other.displacement[k].is_none() || support.displacement[k].is_none())
                 && (0..3).all(|k| !(other.tied[k] && support.displacement[k].is_some()))
                 && (0..3).all(|k| !(support.tied[k] && other.displacement[k].is_some()))

@@ -8,7 +8,7 @@ mod conditions;
 mod contacts;
 mod interfaces;
 mod material;
-mod names;
+pub(crate) mod names;
 mod values;
 
 use crate::ImportError;
@@ -155,7 +155,7 @@ fn adjustment(of: &Adjustment) -> String {
 }
 
 /// A text in quotes.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace(char::is_control, " "))
 }
 

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 /// Names that are given already.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Names(BTreeSet<String>);
+pub(crate) struct Names(BTreeSet<String>);
 
 impl Names {
     /// A name like the wanted one that is not given yet.
-    pub(super) fn take(&mut self, wanted: &str) -> String {
+    pub(crate) fn take(&mut self, wanted: &str) -> String {
         let plain: String = wanted
             .trim()
             .chars()

@@ -2,10 +2,10 @@
 
 use super::curves::{Curves, scale_of, value};
 use super::rigid;
-use super::xml::{File, child, text};
 use crate::ImportError;
 use crate::curve::Curve;
 use crate::deck::{Deck, Load, LoadKind, Place, Support};
+use crate::xml::{File, child, text};
 use roxmltree::Node;
 
 /// The place that an attribute names: a set of nodes, or the nodes of a surface.
@@ -83,7 +83,14 @@ pub(super) fn boundary(file: &File, section: Node, curves: &Curves, deck: &mut D
             }
         }
         if displacement.iter().any(Option::is_some) {
-            deck.supports.push(Support { on: on(deck)?, displacement, tied: [false; 3], from: None, until: None });
+            deck.supports.push(Support {
+                on: on(deck)?,
+                displacement,
+                axes: None,
+                tied: [false; 3],
+                from: None,
+                until: None,
+            });
         }
     }
     Ok(())

@@ -1,9 +1,9 @@
 //! Contacts.
 
-use super::xml::{File, child, text};
 use crate::ImportError;
 use crate::curve::Curve;
 use crate::deck::{ContactPair, Deck, Friction};
+use crate::xml::{File, child, text};
 use roxmltree::Node;
 
 /// The section `Contact`.

@@ -1,8 +1,8 @@
 //! Load curves.
 
-use super::xml::{File, child, children, text};
 use crate::ImportError;
 use crate::curve::{Curve, JUMP};
+use crate::xml::{File, child, children, text};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 

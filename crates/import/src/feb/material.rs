@@ -1,8 +1,8 @@
 //! Materials.
 
-use super::xml::{File, child, children, text};
 use crate::ImportError;
 use crate::deck::{Deck, Fibre, Law, Material, Volumetric};
+use crate::xml::{File, child, children, text};
 use roxmltree::Node;
 
 /// Reads all materials; sections name them by number or by name.

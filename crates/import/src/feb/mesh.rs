@@ -1,9 +1,9 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::xml::{File, children, text};
 use crate::ImportError;
 use crate::deck::{Deck, Element, Section};
 use crate::element::{Kind, Space};
+use crate::xml::{File, children, text};
 use roxmltree::Node;
 
 /// Reads a section of the mesh.

@@ -6,12 +6,11 @@ mod curves;
 mod material;
 mod mesh;
 mod rigid;
-mod xml;
 
 use crate::deck::{Deck, Step};
+use crate::xml::{self, File};
 use crate::{ImportError, What};
 use std::path::Path;
-use xml::File;
 
 /// Sections that change nothing in the results here.
 const WITHOUT_INFLUENCE: [&str; 4] = ["Globals", "Output", "Material", "LoadData"];

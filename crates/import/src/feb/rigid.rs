@@ -3,10 +3,10 @@
 use super::conditions::place;
 use super::curves::{Curves, value};
 use super::material::name_of;
-use super::xml::{File, child, children, text};
 use crate::ImportError;
 use crate::curve::Curve;
 use crate::deck::{Deck, RigidMotion, Support};
+use crate::xml::{File, child, children, text};
 use roxmltree::Node;
 
 /// The names of the components: displacements, then rotations.
@@ -132,7 +132,7 @@ pub(super) fn tie(file: &File, deck: &mut Deck) -> Result<(), ImportError> {
         let [x, y, z, ..] = &motion.components;
         let displacement = [x.clone(), y.clone(), z.clone()];
         let tied = displacement.each_ref().map(Option::is_none);
-        deck.supports.push(Support { on, displacement, tied, from: None, until: None });
+        deck.supports.push(Support { on, displacement, axes: None, tied, from: None, until: None });
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! Histories of supports and nodal loads, node by node, and the supports and loads that follow from them.
 
 use crate::curve::{Curve, JUMP};
-use crate::deck::{Deck, Load, LoadKind, Place, Support};
+use crate::deck::{Axes, Deck, Load, LoadKind, Place, Support};
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How a value changes within a step.
@@ -96,18 +97,27 @@ impl NodeHistories {
         self.list.iter().flat_map(|(node, list)| list.keys().map(|d| (*node, *d))).collect()
     }
 
+    pub(super) fn has(&self, node: u64) -> bool {
+        self.list.contains_key(&node)
+    }
+
+    /// Takes out the histories of a node by direction, with the names of their places.
+    pub(super) fn take_named(&mut self, node: u64) -> BTreeMap<usize, (String, Curve)> {
+        self.list.remove(&node).unwrap_or_default()
+    }
+
     /// Takes out the histories of a node.
     pub(super) fn take(&mut self, node: u64) -> Vec<(usize, Curve)> {
         let list = self.list.remove(&node).unwrap_or_default();
         list.into_iter().map(|(direction, (_, curve))| (direction, curve)).collect()
     }
 
-    /// Nodes that have the same histories under the same names, with their place.
-    fn places(&self, deck: &Deck) -> Vec<(Place, BTreeMap<usize, (String, Curve)>)> {
+    /// Nodes that have the same histories along the same axes under the same names, with their place.
+    fn places(&self, deck: &Deck, axes: &BTreeMap<u64, Axes>) -> Vec<(Place, BTreeMap<usize, (String, Curve)>)> {
         let mut groups: Vec<(BTreeMap<usize, (String, Curve)>, Vec<u64>)> = Vec::new();
         let mut found: BTreeMap<String, usize> = BTreeMap::new();
         for (node, histories) in &self.list {
-            let key = format!("{histories:?}");
+            let key = format!("{histories:?} {:?}", axes.get(node));
             let at = *found.entry(key).or_insert_with(|| {
                 groups.push((histories.clone(), Vec::new()));
                 groups.len() - 1
@@ -134,26 +144,30 @@ impl NodeHistories {
         groups.into_iter().map(place).collect()
     }
 
-    /// The supports of prescribed displacements, which hold until a time if one is given.
-    pub(super) fn supports(&self, deck: &Deck, until: Option<f64>) -> Vec<Support> {
-        let mut times: Vec<f64> = self.begins.values().copied().collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let mut out = Vec::new();
-        for from in std::iter::once(None).chain(times.into_iter().map(Some)) {
-            let mut own = NodeHistories::default();
-            for (node, list) in &self.list {
-                for (direction, history) in list {
-                    if self.begins.get(&(*node, *direction)).copied() == from {
-                        own.list.entry(*node).or_default().insert(*direction, history.clone());
-                    }
-                }
+    /// The supports of prescribed displacements, which hold until a time if one is given: one for each direction, so that sets of
+    /// nodes that overlap stay whole, with the faces that they contain.
+    pub(super) fn supports(&self, deck: &Deck, axes: &BTreeMap<u64, Axes>, until: Option<f64>) -> Vec<Support> {
+        let mut apart: BTreeMap<(OrderedTime, usize), NodeHistories> = BTreeMap::new();
+        for (node, list) in &self.list {
+            for (direction, history) in list {
+                let from = self.begins.get(&(*node, *direction)).copied();
+                let own = apart.entry((OrderedTime(from), *direction)).or_default();
+                own.list.entry(*node).or_default().insert(*direction, history.clone());
             }
+        }
+        let mut out = Vec::new();
+        for ((OrderedTime(from), _), own) in apart {
             let support = |(on, mut histories): (Place, BTreeMap<usize, (String, Curve)>)| {
                 let displacement = std::array::from_fn(|d| histories.remove(&d).map(|(_, curve)| curve));
-                Support { on, displacement, tied: [false; 3], from, until }
+                let node = match &on {
+                    Place::NodeSet(name) => deck.node_sets.get(name).and_then(|(_, nodes)| nodes.first()),
+                    Place::Nodes(_, nodes) => nodes.first(),
+                    _ => None,
+                };
+                let axes = node.and_then(|node| axes.get(node)).cloned();
+                Support { on, displacement, axes, tied: [false; 3], from, until }
             };
-            out.extend(own.places(deck).into_iter().map(support));
+            out.extend(own.places(deck, axes).into_iter().map(support));
         }
         out
     }
@@ -165,7 +179,25 @@ impl NodeHistories {
             let force = std::array::from_fn(|d| histories.remove(&d).map_or_else(zero, |(_, curve)| curve));
             Load { on, kind: LoadKind::NodalForce(force) }
         };
-        self.places(deck).into_iter().map(load).collect()
+        self.places(deck, &BTreeMap::new()).into_iter().map(load).collect()
+    }
+}
+
+/// A time, or none before all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct OrderedTime(Option<f64>);
+
+impl Eq for OrderedTime {}
+
+impl Ord for OrderedTime {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.unwrap_or(f64::NEG_INFINITY).total_cmp(&other.0.unwrap_or(f64::NEG_INFINITY))
+    }
+}
+
+impl PartialOrd for OrderedTime {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
 }
 
@@ -185,6 +217,10 @@ impl EqualDisplacements {
         self.classes.push((direction, all));
     }
 
+    pub(super) fn contains(&self, node: u64) -> bool {
+        self.classes.iter().any(|(_, nodes)| nodes.contains(&node))
+    }
+
     /// Supports in which the nodes of each class are tied. A class with a prescribed node is prescribed as a whole.
     pub(super) fn apply(&self, supports: &mut NodeHistories) -> Vec<Support> {
         let mut tied: BTreeMap<&BTreeSet<u64>, [bool; 3]> = BTreeMap::new();
@@ -196,7 +232,7 @@ impl EqualDisplacements {
         }
         let support = |(nodes, tied): (&BTreeSet<u64>, [bool; 3])| {
             let on = Place::Nodes("equal".into(), nodes.iter().copied().collect());
-            Support { on, displacement: [None, None, None], tied, from: None, until: None }
+            Support { on, displacement: [None, None, None], axes: None, tied, from: None, until: None }
         };
         tied.into_iter().map(support).collect()
     }

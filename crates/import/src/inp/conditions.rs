@@ -99,12 +99,6 @@ impl Model {
             }
             let value = card.number(data, 3)?.unwrap_or(0.0);
             for node in nodes {
-                if self.transformed.contains(&node) && !(first == 1 && last >= 3 && value == 0.0) {
-                    return Err(card.wrong(
-                        data,
-                        format!("cannot be imported: the node {node} has directions of its own by *TRANSFORM"),
-                    ));
-                }
                 for direction in first..=last {
                     if direction as usize <= dimension || self.reference(node) {
                         self.histories.support(node, direction as usize - 1, &target, value, &change);
@@ -127,11 +121,6 @@ impl Model {
                 return Err(card.wrong(data, format!("direction {direction}: valid are 1 to 3; nodes have no moments")));
             }
             for node in nodes {
-                if self.transformed.contains(&node) {
-                    let message =
-                        format!("cannot be imported: the node {node} has directions of its own by *TRANSFORM");
-                    return Err(card.wrong(data, message));
-                }
                 self.histories.force(node, direction - 1, &data.fields[0], value, &change);
             }
         }

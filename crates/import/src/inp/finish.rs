@@ -53,10 +53,12 @@ impl Model {
             motion.centre = reference.and_then(|n| self.deck.nodes.get(&n).copied());
             *self.deck.rigid.entry(material) = motion;
         }
+        self.check_transformed()?;
+        self.turn_forces();
         let tied = self.equal.apply(&mut self.histories.supports);
-        let mut supports = self.histories.supports.supports(&self.deck, None);
+        let mut supports = self.histories.supports.supports(&self.deck, &self.transformed, None);
         for (until, ended) in &self.histories.ended {
-            supports.extend(ended.supports(&self.deck, Some(*until)));
+            supports.extend(ended.supports(&self.deck, &self.transformed, Some(*until)));
         }
         self.deck.supports = supports;
         self.deck.supports.extend(tied);

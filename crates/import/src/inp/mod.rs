@@ -10,6 +10,7 @@ mod mesh;
 mod model;
 mod refused;
 mod steps;
+mod transform;
 
 use crate::deck::Deck;
 use crate::{ImportError, What};

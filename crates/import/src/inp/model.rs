@@ -5,8 +5,8 @@ use super::card::Card;
 use super::steps::Histories;
 use super::{material, refused};
 use crate::ImportError;
-use crate::deck::{ContactPair, Deck, Friction, Law, Section, Stiffness};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::deck::{Axes, ContactPair, Deck, Friction, Law, Section, Stiffness};
+use std::collections::BTreeMap;
 
 /// What a surface interaction says of the contacts that name it.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,8 @@ pub(super) struct Model {
     pub(super) contacts: Vec<(ContactPair, Option<String>)>,
     pub(super) amplitudes: BTreeMap<String, (bool, Vec<[f64; 2]>)>,
     pub(super) orientations: BTreeMap<String, [[f64; 3]; 2]>,
-    pub(super) transformed: BTreeSet<u64>,
+    /// Axes of their own of nodes.
+    pub(super) transformed: BTreeMap<u64, Axes>,
     pub(super) equal: EqualDisplacements,
     pub(super) histories: Histories,
     pub(super) rigid_nodes: Vec<RigidNodes>,
@@ -55,7 +56,7 @@ impl Model {
             contacts: Vec::new(),
             amplitudes: BTreeMap::new(),
             orientations: BTreeMap::new(),
-            transformed: BTreeSet::new(),
+            transformed: BTreeMap::new(),
             equal: EqualDisplacements::default(),
             histories: Histories::default(),
             rigid_nodes: Vec::new(),
@@ -203,18 +204,6 @@ impl Model {
             .and_then(|n| n.try_into().ok())
             .ok_or_else(|| card.wrong(card.data.first(), "expected two points: six numbers"))?;
         self.orientations.insert(card.required("NAME")?.to_uppercase(), [[a, b, c], [d, e, f]]);
-        Ok(())
-    }
-
-    fn transform(&mut self, card: &Card) -> Result<(), ImportError> {
-        let set = card.required("NSET")?;
-        let none = || card.wrong(None, format!("there is no set of nodes `{set}`"));
-        let nodes = self.deck.node_sets.get(set).ok_or_else(none)?.1.clone();
-        let is_identity =
-            card.numbers()?.get(..6).is_some_and(|n| n[0] > 0.0 && [n[1], n[2], n[3], n[5]] == [0.0; 4] && n[4] > 0.0);
-        if card.value("TYPE").is_some_and(|t| !t.eq_ignore_ascii_case("R")) || !is_identity {
-            self.transformed.extend(nodes);
-        }
         Ok(())
     }
 

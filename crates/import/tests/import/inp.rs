@@ -214,7 +214,9 @@ fn supports_and_friction_change_with_steps() {
 *CHANGE FRICTION, INTERACTION=I1\n*FRICTION\n0.5\n*END STEP";
     let text = cubes(CONTACT, steps);
     let deck = Deck { keeps_stiffness: true, ..deck("released.inp", &text).unwrap() };
-    let times: Vec<_> = deck.supports.iter().map(|s| (s.on.clone(), s.from, s.until)).collect();
+    // One for each direction.
+    let mut times: Vec<_> = deck.supports.iter().map(|s| (s.on.clone(), s.from, s.until)).collect();
+    times.dedup();
     let set = |name: &str| Place::NodeSet(name.into());
     assert_eq!(times, [(set("Top"), Some(1.0), None), (set("Bottom"), None, Some(1.0))]);
     let Friction::Coulomb(mu) = &deck.contacts[0].friction else { panic!("friction") };
@@ -252,4 +254,36 @@ fn ties_and_bodies_of_two_materials_are_tied() {
         "{written}"
     );
     assert_eq!(written.matches("nodal_force").count(), 1, "{written}");
+}
+
+/// Axes of nodes: those of supports are written, forces are turned, the sets stay whole where they overlap.
+#[test]
+fn transforms_are_axes_of_supports() {
+    let steps = "*STEP\n*STATIC\n*BOUNDARY\nAround, 2\nLow, 3\n*CLOAD\n7, 1, 2.\n7, 2, 1.\n*END STEP";
+    let sets = "*NSET, NSET=Around\n2, 3, 4, 6\n*NSET, NSET=Low\n1, 2, 3, 4\n*NSET, NSET=Both\n2, 3, 4, 6, 7, 1\n";
+    let with =
+        |kind: &str, points: &str| cubes(&format!("{sets}*TRANSFORM, NSET=Both, TYPE={kind}\n{points}\n"), steps);
+    let about = case_of("turned.inp", &with("C", "0, -1, 0, 0, -1, 1"));
+    assert!(about.contains("displacement = [\"free\", 0.0, \"free\"]\naxes.cylindrical = { point = [0.0, -1.0, 0.0], axis = [0.0, 0.0, 1.0] }"), "{about}");
+    for set in ["Around\"", "Low nodes\""] {
+        assert!(about.contains(set), "{about}");
+    }
+    // Node 7 is at (1, 1, 1), outwards is (1, 2)/√5: 2 of it and 1 around.
+    let found = deck("turned.inp", &with("C", "0, -1, 0, 0, -1, 1")).unwrap();
+    let force = found.loads.iter().find_map(|l| match &l.kind {
+        LoadKind::NodalForce(f) => Some(f.each_ref().map(|c| c.at(1.0))),
+        _ => None,
+    });
+    let [x, y, z] = force.unwrap();
+    assert!(x.abs() < 1e-15 && (y - 5f64.sqrt()).abs() < 1e-15 && z == 0.0, "{x} {y} {z}");
+    let inclined = case_of("turned.inp", &with("R", "1, 1, 0, -1, 1, 0"));
+    assert!(inclined.contains("axes.rectangular = [[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]"), "{inclined}");
+    for (kind, points, told) in [
+        ("S", "0, 0, 0, 0, 0, 1", "TYPE=S: valid are R and C"),
+        ("R", "1, 1, 0, 2, 2, 0", "the two points make no axes"),
+        ("C", "1, 0, 0, 1, 0, 1", "it lies on the line about which the axes turn"),
+    ] {
+        let message = refused("turned.inp", &with(kind, points)).1;
+        assert!(message.contains(told), "{message}");
+    }
 }

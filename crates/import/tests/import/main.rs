@@ -4,6 +4,8 @@ mod curves;
 mod feb;
 mod inp;
 mod mesh;
+mod paths;
+mod vtu;
 
 use signorini_import::{Deck, ImportError, case, read};
 use std::path::PathBuf;

@@ -11,7 +11,7 @@ use signorini_import::read_mesh;
 use std::fmt::Write;
 
 /// Vertices of one element, and the edges between which CalculiX has its nodes of order 2, in its order.
-fn element(kind: Kind) -> (&'static [[f64; 3]], &'static [[usize; 2]], &'static str) {
+pub(crate) fn element(kind: Kind) -> (&'static [[f64; 3]], &'static [[usize; 2]], &'static str) {
     const CUBE: [[f64; 3]; 8] = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -40,7 +40,7 @@ fn element(kind: Kind) -> (&'static [[f64; 3]], &'static [[usize; 2]], &'static 
 }
 
 /// A map that bends edges: of second order, so cells of 27, 18 and 10 nodes reproduce it.
-fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.1 * y * y, y - 0.05 * z * z, z + 0.1 * x * y]
 }
 
@@ -67,7 +67,7 @@ fn mesh_of(text: &str, selection: &Selection) -> Mesh<3> {
     build::<3>(&read_mesh(&path).unwrap(), selection).unwrap()
 }
 
-fn volume(mesh: &Mesh<3>) -> f64 {
+pub(crate) fn volume(mesh: &Mesh<3>) -> f64 {
     let mut at = signorini_fem::hierarchic::Values::default();
     let points = rule(mesh.shape(0), 6);
     let jacobian = |xi: &[f64; 3], at: &mut _| {
@@ -77,7 +77,7 @@ fn volume(mesh: &Mesh<3>) -> f64 {
     points.iter().map(|(xi, w)| w * jacobian(xi, &mut at)).sum()
 }
 
-const KINDS: [Kind; 6] =
+pub(crate) const KINDS: [Kind; 6] =
     [Kind::Hexahedron8, Kind::Hexahedron20, Kind::Wedge6, Kind::Wedge15, Kind::Tetrahedron4, Kind::Tetrahedron10];
 
 /// Every node in its place: otherwise the map is folded, or not that of the vertices, or not the bent one.

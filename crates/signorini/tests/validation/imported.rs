@@ -115,3 +115,80 @@ fn wrong_groups_of_decks_are_told() {
         assert!(wrong.contains(told), "{wrong}");
     }
 }
+
+/// A sector of a tube of elements with 20 nodes under pressure, inclined in space: both cuts are held around the axis and the lower and
+/// upper faces along it by `*TRANSFORM`, so that it widens as the whole tube does (Lamé, plane strain).
+#[test]
+fn a_tube_held_along_cylindrical_axes() {
+    const EDGES: [[usize; 2]; 12] =
+        [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+    const CUBE: [[usize; 3]; 8] =
+        [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]];
+    let (a, b, pressure, modulus, nu) = (1.0f64, 2.0f64, 10.0, 1000.0, 0.3);
+    let (inclined, origin) = (0.7f64, [3.0, -2.0, 5.0]);
+    // The axis of the tube leans by an angle in the plane of y and z.
+    let turned = |[x, y, z]: [f64; 3]| {
+        let (s, c) = inclined.sin_cos();
+        [origin[0] + x, origin[1] + c * y - s * z, origin[2] + s * y + c * z]
+    };
+    let n = 3;
+    let mut nodes: std::collections::BTreeMap<[usize; 3], usize> = Default::default();
+    let mut elements = String::new();
+    for (number, [i, j]) in (0..n * n).map(|k| [k / n, k % n]).enumerate() {
+        let corner = |v: usize| [CUBE[v][0] + 2 * i, CUBE[v][1] + 2 * j, CUBE[v][2]];
+        let middle = |e: &[usize; 2]| std::array::from_fn(|k| (corner(e[0])[k] + corner(e[1])[k]) / 2);
+        let places: Vec<[usize; 3]> = (0..8).map(corner).chain(EDGES.iter().map(middle)).collect();
+        let mut list = Vec::new();
+        for place in places {
+            let next = nodes.len() + 1;
+            list.push(nodes.entry(place).or_insert(next).to_string());
+        }
+        elements += &format!("{}, {},\n{}\n", number + 1, list[..10].join(", "), list[10..].join(", "));
+    }
+    let (mut text, mut cut, mut low) = (String::from("*NODE, NSET=All\n"), String::new(), String::new());
+    let mut by_number: Vec<_> = nodes.iter().collect();
+    by_number.sort_by_key(|(_, number)| **number);
+    for ([i, j, k], number) in by_number {
+        let share = |v: &usize| *v as f64 / (2 * n) as f64;
+        let (r, t) = (a + (b - a) * share(i), 0.9 * share(j));
+        let [x, y, z] = turned([r * t.cos(), r * t.sin(), 0.2 * *k as f64]);
+        text += &format!("{number}, {x:?}, {y:?}, {z:?}\n");
+        if *j == 0 || *j == 2 * n {
+            cut += &format!("{number}\n");
+        }
+        if *k != 1 {
+            low += &format!("{number}\n");
+        }
+    }
+    let [from, to] =
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(turned).map(|x| format!("{:?}, {:?}, {:?}", x[0], x[1], x[2]));
+    let pressed: String = (1..=n).map(|e| format!("{e}, P6, {pressure:?}\n")).collect();
+    text += &format!(
+        "*ELEMENT, TYPE=C3D20, ELSET=E\n{elements}*NSET, NSET=Cut\n{cut}*NSET, NSET=Low\n{low}*TRANSFORM, NSET=All, TYPE=C\n{from}, {to}
+*MATERIAL, NAME=M\n*ELASTIC\n{modulus:?}, {nu:?}\n*SOLID SECTION, ELSET=E, MATERIAL=M\n*STEP\n*STATIC\n*BOUNDARY\nCut, 2\nLow, 3
+*DLOAD\n{pressed}*END STEP\n"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let deck = folder.path().join("tube.inp");
+    std::fs::write(&deck, text).expect("written");
+    let way = deck.display().to_string().replace('\\', "/");
+    let mut case = signorini::import::case_text(&deck, &way, false).unwrap_or_else(|e| panic!("{e}"));
+    let places = [(a, 0.0), (a, 0.6), (a + 1.0 / 3.0, 0.3), (b, 0.9)]
+        .map(|(r, t): (f64, f64)| (r, [r * t.cos(), r * t.sin(), 0.0]));
+    for (k, (_, x)) in places.iter().enumerate() {
+        case += if k == 0 { "\n[output.probes]\n" } else { "" };
+        case += &format!("p{k} = {:?}\n", turned(*x));
+    }
+    let found = summary(&case, &set(&[]));
+    let scale = pressure * a * a / (b * b - a * a) * (1.0 + nu) / modulus;
+    let widening = |r: f64| scale * ((1.0 - 2.0 * nu) * r + b * b / r);
+    for (k, (r, x)) in places.iter().enumerate() {
+        let u: [f64; 3] =
+            std::array::from_fn(|i| number(&last_step(&found)["probes"][format!("p{k}")]["displacement"][i]));
+        let exact = turned([x[0] / r * widening(*r), x[1] / r * widening(*r), 0.0]);
+        for i in 0..3 {
+            let error = (u[i] + origin[i] - exact[i]).abs() / widening(a);
+            assert!(error < 5e-4, "at {x:?}: {error:.1e}");
+        }
+    }
+}

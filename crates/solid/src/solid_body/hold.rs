@@ -30,6 +30,9 @@ impl<const D: usize> SolidBody<D> {
         if all.is_empty() && group.between.is_empty() {
             return Err(self.unsuitable(format!("`{}` has nothing that could be held", on.unwrap_or("all"))));
         }
+        if let Some(axes) = &hold.axes {
+            return self.along_axes(&group, axes, &hold.displacement, u, on);
+        }
         let wanted = |x: &Point<D>| {
             let x = spatial(x);
             Point::<D>::from_fn(|i, _| hold.displacement[i].map_or(0.0, |field| field(&x)))
@@ -37,8 +40,7 @@ impl<const D: usize> SolidBody<D> {
         let at = wanted;
         let mut wanted = project(body, &group, &at);
         let coupled = self.between(&group, &at, &mut all, &mut wanted);
-        let mut is_vertex = vec![false; body.dofs.count()];
-        body.unity_unknowns().for_each(|k| is_vertex[k / D] = true);
+        let is_vertex = self.vertex_functions();
         // The functions of the vertices add up to one: forces on them make the resultant.
         let reaction =
             |f: u32, along: Vector<3>| [along * f64::from(u8::from(is_vertex[f as usize])), Vector::<3>::zeros()];
@@ -61,10 +63,7 @@ impl<const D: usize> SolidBody<D> {
             }
         }
         if !coupled.is_empty() && (hold.along.is_some() || hold.uniform != [false; 3]) {
-            return Err(self.unsuitable(format!(
-                "`{}` has nodes in the middle of edges without the ends of these: they can only be held along the axes",
-                on.unwrap_or("all")
-            )));
+            return Err(self.only_along_space(on.unwrap_or("all")));
         }
         if let Some((n, field)) = &hold.along {
             let direction = Point::<D>::from_fn(|i, _| n[i]);
@@ -95,15 +94,31 @@ impl<const D: usize> SolidBody<D> {
     }
 }
 
+impl<const D: usize> SolidBody<D> {
+    /// Whether a function is that of a vertex, or one of a spline.
+    pub(super) fn vertex_functions(&self) -> Vec<bool> {
+        let body = self.body();
+        let mut out = vec![false; body.dofs.count()];
+        body.unity_unknowns().for_each(|k| out[k / D] = true);
+        out
+    }
+
+    pub(super) fn only_along_space(&self, on: &str) -> PlaceError {
+        self.unsuitable(format!(
+            "`{on}` has nodes in the middle of edges without the ends of these: they can only be held along the axes of space"
+        ))
+    }
+}
+
 /// A node whose displacement several functions make that are not held: `Σ N_f u_f = value`.
-struct Coupled<const D: usize> {
+pub(super) struct Coupled<const D: usize> {
     terms: Vec<(u32, f64)>,
     value: Point<D>,
 }
 
 impl<const D: usize> SolidBody<D> {
     /// Adds what nodes in the middle of edges and faces hold: a function where all others there are held already.
-    fn between(
+    pub(super) fn between(
         &self,
         group: &Group,
         wanted: &dyn Fn(&Point<D>) -> Point<D>,

@@ -1,5 +1,6 @@
 //! From the statement to bodies of any kind in one system: ropes, beams, free rigid bodies.
 
+mod axes;
 pub(crate) mod cells;
 pub(super) mod contacts;
 mod curves;

@@ -166,6 +166,7 @@ impl Planner<'_> {
                 Some(values) => self.held_components(&values.0, self.dimension(), LENGTH, wrong)?,
                 None => [None, None, None],
             };
+            let axes = self.support_axes(key, is_solid)?;
             let mut along: Option<(Vector<3>, TimeField)> = None;
             if let Some(normal) = &key.normal {
                 let of_cells = match problem.bodies.get(system.bodies[part.body].name()) {
@@ -227,7 +228,8 @@ impl Planner<'_> {
                 let time = |value: &Option<Value>| value.as_ref().map(|v| self.reader.number(v, TIME)).transpose();
                 let (from, until) = (time(&key.from)?, time(&key.until)?);
                 self.check_times(key, [from, until], system.bodies[part.body].name())?;
-                let support = Support { name: name.clone(), part, displacement, rotation, along, uniform, from, until };
+                let support =
+                    Support { name: name.clone(), part, displacement, axes, rotation, along, uniform, from, until };
                 let body = &system.bodies[support.part.body];
                 let hold = at_start(&support);
                 let none: [Option<&dyn Fn(&Point<3>) -> f64>; 3] = [None; 3];
@@ -240,6 +242,7 @@ impl Planner<'_> {
                 let direction = support.along.as_ref().map(|(n, _)| (*n, &zero as &dyn Fn(&Point<3>) -> f64));
                 let hold = Hold {
                     displacement: filled(&hold[0]),
+                    axes,
                     rotation: filled(&hold[1]),
                     along: direction,
                     uniform: support.uniform,

@@ -34,6 +34,7 @@ impl Planner<'_> {
             };
             let others = [
                 ("normal", key.normal.as_ref().map(|v| self.key(v))),
+                ("axes", key.axes.as_ref().map(|v| self.key(v))),
                 ("tied", key.tied.as_ref().map(|v| self.key(v))),
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
                 ("from", key.from.as_ref().map(|v| self.key(v))),

@@ -84,7 +84,8 @@ impl Planner<'_> {
 
     /// Refuses what only decks have.
     fn check_is_gmsh(&self, key: &MeshFile) -> Result<(), CaseError> {
-        let message = "only files of CalculiX, Abaqus (.inp) and FEBio (.feb) have numbered nodes and faces";
+        let message =
+            "only files of CalculiX, Abaqus (.inp), FEBio (.feb) and VTK (.vtu) have numbered nodes and faces";
         let wrong = |at: &dyn Location| {
             Err(self
                 .problem

@@ -340,8 +340,12 @@ fn uniform(support: &Support, system: &System, time: f64) -> Option<Vector<3>> {
     let at = |k: usize| shown.points.get(k).copied().unwrap_or_default();
     let along = |i: usize, x: &Point<3>| support.along.as_ref().map_or(0.0, |(n, f)| n[i] * f(x, time));
     let value = |i: usize, x: &Point<3>| support.displacement[i].as_ref().map_or_else(|| along(i, x), |f| f(x, time));
-    let first = Vector::<3>::from_fn(|i, _| value(i, &at(0)));
-    let same = |k: usize| (0..3).all(|i| value(i, &at(k)) == first[i]);
+    let prescribed = |x: &Point<3>| match &support.axes {
+        Some(axes) => axes.vector(x, support.displacement.each_ref().map(|d| d.as_ref().map(|f| f(x, time)))),
+        None => Some(Vector::<3>::from_fn(|i, _| value(i, x))),
+    };
+    let first = prescribed(&at(0))?;
+    let same = |k: usize| prescribed(&at(k)) == Some(first);
     [last, last / 2, last / 3].into_iter().all(same).then_some(first)
 }
 

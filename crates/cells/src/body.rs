@@ -15,7 +15,7 @@ use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
 use crate::space::{Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
 use rayon::prelude::*;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 use signorini_geometry::{Aabb, Point};
 use std::sync::Arc;
 

@@ -33,7 +33,7 @@ use master::BoundaryMaster;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use shown::Shown;
-use signorini_fem::elastic::Space;
+use signorini_material::Space;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;

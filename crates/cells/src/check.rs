@@ -6,7 +6,7 @@ use crate::legendre::MAX_DEGREE;
 use crate::memory::check_memory;
 use crate::region::{Integration, Region};
 use crate::tree::CellTree;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 
 /// # Errors
 /// Constants out of range, more cells than the memory holds, values of the shape that are not finite.

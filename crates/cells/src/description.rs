@@ -22,7 +22,7 @@ use crate::tree::CellTree;
 use crate::voxels::ModulusImage;
 pub use shape::Shape;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::{Aabb, Point, Vector};
 use signorini_mechanics::Body;

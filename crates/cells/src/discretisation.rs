@@ -7,7 +7,7 @@ use crate::moments::VolumePoints;
 use crate::region::{Integration, Region};
 use crate::space::Products;
 use crate::tree::Leaf;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 
 /// What is done with pieces of the body that do not hang together with the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

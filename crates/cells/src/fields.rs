@@ -6,7 +6,7 @@ use crate::space::Tabulation;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::{Space, von_mises};
+use signorini_material::{Space, von_mises};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{Means, Samples};
 

@@ -58,7 +58,7 @@ pub use moments::VolumePoints;
 pub use place::Place;
 pub use region::{BoundaryPoint, Filling, Integration, Region};
 pub use signorini_fem::cut::End;
-pub use signorini_fem::elastic::{Elastic, Space, von_mises};
+pub use signorini_material::{Elastic, Space, von_mises};
 pub use space::{Products, Tabulation};
 pub use tree::{CellTree, Leaf};
 

@@ -18,7 +18,7 @@ use crate::space::Tabulation;
 use crate::tensor_integrals::TensorFunctions;
 use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
-use signorini_fem::elastic::Space;
+use signorini_material::Space;
 use signorini_geometry::{Point, Vector};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Bodies and their boundaries.
 
-use crate::material::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 use signorini_contact::{ContactSurface, FaceForm, FaceMaps, FacePoint, ShapeFunction, SplineFace};
 use signorini_fem::cell_map::CellMap;
 use signorini_fem::hierarchic::{Mode, Values};

@@ -7,7 +7,7 @@
 //! helped in this way, and splines of degree 2 and more, whose cells have few functions of their own, must not be: for a material
 //! that hardly compresses they are better of a high degree.
 
-use crate::material::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 use nalgebra::{DMatrix, Matrix3};
 use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;

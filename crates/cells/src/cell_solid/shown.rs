@@ -10,7 +10,7 @@ use crate::fields::{PointState, components};
 use crate::region::Filling;
 use crate::shapes::spatial;
 use rayon::prelude::*;
-use signorini_fem::elastic::von_mises;
+use signorini_material::von_mises;
 use signorini_geometry::Point;
 use signorini_mechanics::BodyFields;
 use std::collections::BTreeMap;

@@ -17,7 +17,7 @@ use super::planner::Planner;
 use crate::problem::{self, CaseError, KeyPath, SolidMesh};
 use crate::report::Warning;
 use signorini_fem::Mesh;
-use signorini_solid::SolidMaterial;
+use signorini_material::SolidMaterial;
 
 impl Planner<'_> {
     /// The cells of a solid, the degree of its functions, and what it is made of.

@@ -7,8 +7,8 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::law::{Response, StrainError, StressLaw, Tensor};
-use crate::material::{Elastic, Space};
+use signorini_material::law::{Response, StrainError, StressLaw, Tensor};
+use signorini_material::{Elastic, Space};
 use crate::stiffness::{Table, pressures, projects};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
@@ -166,7 +166,7 @@ impl<const D: usize> SolidBody<D> {
                 continue;
             }
             law.check(&f)?;
-            responses.push(law.deviatoric(elastic, &f, self.history.at(state, cell, q)));
+            responses.push(law.deviatoric(elastic, &f, self.history.at(&state.internal, cell, q)));
             dilatations.push(law.dilatation(&f));
         }
         // Volumetric part: pressure at each point, and how it changes with the dilatation.

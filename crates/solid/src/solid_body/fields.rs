@@ -2,8 +2,8 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::law::StressLaw;
-use crate::material::{Elastic, Space, von_mises};
+use signorini_material::StressLaw;
+use signorini_material::{Elastic, Space, von_mises};
 use crate::stiffness::Table;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
@@ -119,7 +119,7 @@ impl<const D: usize> SolidBody<D> {
             .map(|q| {
                 let f = at.deformation(q, &gradients);
                 let (elastic, law) = &at.laws[q];
-                let history = self.history.at(state, cell, q);
+                let history = self.history.at(&state.internal, cell, q);
                 let stress = if plane_stress {
                     law.plane_stress(elastic, &f).map(|r| r.stress).unwrap_or_default()
                 } else {

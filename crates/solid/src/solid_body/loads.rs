@@ -6,7 +6,7 @@
 use super::projection::vertices;
 use super::spatial::spatial;
 use super::{SolidBody, axis};
-use crate::material::Space;
+use signorini_material::Space;
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
 use signorini_fem::hierarchic::Values;

@@ -3,8 +3,8 @@
 use crate::plan::planner::Planner;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Space, Value, YieldStress};
-use signorini_solid::law::{ElasticPlastic, Hardening, HardeningError};
-use signorini_solid::{SolidMaterial, StressLaw};
+use signorini_material::law::{ElasticPlastic, Hardening, HardeningError};
+use signorini_material::{SolidMaterial, StressLaw};
 
 impl Planner<'_> {
     pub(super) fn elastic_plastic(

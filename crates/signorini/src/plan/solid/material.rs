@@ -6,8 +6,8 @@ use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Material, Value};
 use signorini_fem::Mesh;
 use signorini_geometry::{Point, Vector};
-use signorini_solid::law::Volumetric;
-use signorini_solid::{Elastic, SolidMaterial, StressLaw};
+use signorini_material::law::Volumetric;
+use signorini_material::{Elastic, SolidMaterial, StressLaw};
 use std::sync::Arc;
 
 impl Planner<'_> {

@@ -1,8 +1,8 @@
 //! Orthotropic elasticity against compliance, rotations, isotropy and differences.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use signorini_solid::law::*;
-use signorini_solid::{Elastic, StressLaw};
+use signorini_material::law::*;
+use signorini_material::{Elastic, StressLaw};
 
 const E: [f64; 3] = [10.0, 4.0, 2.0];
 const NU: [f64; 3] = [0.3, 0.2, 0.35];

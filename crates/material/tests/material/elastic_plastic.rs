@@ -1,8 +1,8 @@
 //! Plasticity at a point: cycles, differences, indifference, energies.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use signorini_solid::law::*;
-use signorini_solid::{Elastic, StressLaw};
+use signorini_material::law::*;
+use signorini_material::{Elastic, StressLaw};
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 1000.0, poissons_ratio: 0.3 };
 

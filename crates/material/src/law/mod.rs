@@ -45,7 +45,7 @@ pub use tensor::{Response, Tensor, Tensor4};
 pub use volumetric::Volumetric;
 pub use yeoh::Yeoh;
 
-use crate::material::{Elastic, Space};
+use crate::elastic::{Elastic, Space};
 use nalgebra::{Matrix3, Vector3};
 use tensor::{flat, fourth};
 

@@ -1,8 +1,8 @@
 //! Stress laws against differences and homogeneous stretches.
 
 use nalgebra::Matrix3;
-use signorini_solid::law::{StrainError, StressLaw, Volumetric};
-use signorini_solid::material::Elastic;
+use signorini_material::law::{StrainError, StressLaw, Volumetric};
+use signorini_material::Elastic;
 
 const LAWS: [StressLaw; 4] = [
     StressLaw::LinearElastic,

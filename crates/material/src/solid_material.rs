@@ -1,7 +1,7 @@
 //! What a solid is made of.
 
 use crate::law::StressLaw;
-use crate::material::Elastic;
+use crate::elastic::Elastic;
 use signorini_geometry::Point;
 use std::sync::Arc;
 

@@ -23,7 +23,7 @@ pub(crate) fn check<const D: usize>(
     if !(0.0..1.0).contains(&discretisation.fictitious) {
         return Err(CellsError::Fictitious { value: discretisation.fictitious });
     }
-    let Elastic { youngs_modulus, poissons_ratio } = material.elastic;
+    let Elastic { youngs_modulus, poissons_ratio } = *material.elastic();
     if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
         return Err(CellsError::Value { name: "youngs_modulus", value: youngs_modulus, must: "must be positive" });
     }

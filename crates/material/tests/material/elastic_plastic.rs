@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use signorini_material::law::*;
-use signorini_material::{Elastic, StressLaw};
+use signorini_material::{Elastic, Space, StressLaw};
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 1000.0, poissons_ratio: 0.3 };
 
@@ -30,7 +30,7 @@ fn bar(law: &StressLaw, stretch: f64, history: &mut Vec<f64>) -> (f64, f64, f64)
     }
     let f = Matrix3::from_diagonal(&[stretch, lateral, lateral].into());
     let stress = law.response_from(&ELASTIC, &f, history).unwrap().stress[0];
-    let found = law.plastic(&ELASTIC, &f, history).unwrap();
+    let found = law.plastic(&ELASTIC, Space::Solid, &f, history).unwrap();
     *history = found.history;
     (stress, lateral, found.dissipated)
 }
@@ -123,7 +123,7 @@ fn the_tangent_is_that_of_the_algorithm() {
         (law(table, 5.0, 0.0, true), 0.4),
     ] {
         let first = Matrix3::identity() + before * (0.5 * size);
-        let history = law.plastic(&ELASTIC, &first, &law.start()).unwrap().history;
+        let history = law.plastic(&ELASTIC, Space::Solid, &first, &law.start()).unwrap().history;
         let there = Matrix3::identity() + some * size;
         let at = |f: &Matrix3<f64>| law.response_from(&ELASTIC, f, &history).unwrap();
         let here = at(&there);
@@ -141,7 +141,7 @@ fn the_tangent_is_that_of_the_algorithm() {
             assert!(error < 1e-8, "{} {size}: {error:e}", law.name());
         }
         assert!((here.tangent - here.tangent.transpose()).norm() < 1e-12 * here.tangent.norm());
-        let plastic = law.plastic(&ELASTIC, &there, &history).unwrap().history[0] > history[0];
+        let plastic = law.plastic(&ELASTIC, Space::Solid, &there, &history).unwrap().history[0] > history[0];
         assert_eq!(plastic, size > 1e-3, "{} {size}", law.name());
     }
 }
@@ -162,8 +162,8 @@ fn finite_plasticity_is_indifferent_to_the_frame() {
         let here = law.response_from(&ELASTIC, f, &history).unwrap();
         let there = law.response_from(&ELASTIC, &(r * f), &turned).unwrap();
         assert!((matrix(&there.stress) - r * matrix(&here.stress)).norm() < 1e-11);
-        history = law.plastic(&ELASTIC, f, &history).unwrap().history;
-        turned = law.plastic(&ELASTIC, &(r * f), &turned).unwrap().history;
+        history = law.plastic(&ELASTIC, Space::Solid, f, &history).unwrap().history;
+        turned = law.plastic(&ELASTIC, Space::Solid, &(r * f), &turned).unwrap().history;
         assert!(history.iter().zip(&turned).all(|(a, b)| (a - b).abs() < 1e-12));
     }
     let perfect = self::law(&[[2.0, 0.0]], 0.0, 0.0, true);
@@ -174,7 +174,7 @@ fn finite_plasticity_is_indifferent_to_the_frame() {
         f[(0, 1)] = 3.0 * k as f64 / steps as f64;
         let at = perfect.response_from(&ELASTIC, &f, &history).unwrap();
         shear = (matrix(&at.stress) * f.transpose())[(0, 1)];
-        history = perfect.plastic(&ELASTIC, &f, &history).unwrap().history;
+        history = perfect.plastic(&ELASTIC, Space::Solid, &f, &history).unwrap().history;
     }
     assert!((shear - 2.0 / 3f64.sqrt()).abs() < 2e-3, "{shear}");
     // Its equivalent plastic strain is γ/√3 less the elastic one.

@@ -50,7 +50,7 @@ fn equal_constants_are_isotropic_also_in_plane_stress() {
         let law = StressLaw::Orthotropic(if is_finite { same.at_finite_strain() } else { same });
         for plane in [false, true] {
             let at = |law: &StressLaw| match plane {
-                true => law.plane_stress(&elastic, &f).unwrap(),
+                true => law.plane_stress(&elastic, &f, &[]).unwrap(),
                 false => law.response(&elastic, &f).unwrap(),
             };
             let (a, b) = (at(&law), at(&isotropic));

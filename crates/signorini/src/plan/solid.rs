@@ -29,7 +29,7 @@ impl Planner<'_> {
         warnings: &mut Vec<Warning>,
     ) -> Result<(Mesh<D>, usize, SolidMaterial), CaseError> {
         let problem = self.problem;
-        let material = self.material(key)?;
+        let material = self.material(key.strain.as_ref(), &key.material)?;
         let stated = match &key.degree {
             None => None,
             Some(d) if (1..=8).contains(d) => Some(*d as usize),

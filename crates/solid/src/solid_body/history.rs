@@ -5,10 +5,10 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use signorini_material::law::{Plastic, StressLaw};
-use signorini_material::{Elastic, Space};
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
+use signorini_material::law::{Plastic, StressLaw};
+use signorini_material::{Elastic, Space};
 use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
 
 impl<const D: usize> SolidBody<D> {
@@ -18,7 +18,7 @@ impl<const D: usize> SolidBody<D> {
         let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
         let of = |(q, (elastic, law)): (usize, &(Elastic, StressLaw))| {
             let f: Matrix3<f64> = at.deformation(q, &displacement);
-            let found = law.plastic(elastic, &f, self.history.at(&state.internal, cell, q))?;
+            let found = law.plastic(elastic, self.space(), &f, self.history.at(&state.internal, cell, q))?;
             Some((at.weights[q], found))
         };
         at.laws.iter().enumerate().filter_map(of).collect()

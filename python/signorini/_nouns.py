@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '0946f847bd9037e4'
+SCHEMA = '8e41e480a6b8e64c'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -328,7 +328,7 @@ class Cells(Noun):
 
     geometry: The region filled with material: a shape, a set operation on shapes, or an image.
     mesh: The grid of cells around the body.
-    material: Material of the body: linear elastic.
+    material: The material of the body.
     alpha: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
     degree: Polynomial degree, 1 to 8; 3 if left out.
     functions: Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this
@@ -338,10 +338,11 @@ class Cells(Noun):
         top. If contact names the whole body, it includes the boundary and the sides, except those with a support.
     integration: Quadrature of cut cells; `exact` if left out.
     islands: Treatment of pieces that are not connected to the largest one; `refuse` if left out.
+    strain: Strain measure: `small` or `finite`; `small` if left out.
     """
 
     _key = 'cells'
-    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str')}
+    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str'), 'strain': ('strain', 'str')}
 
     def __init__(
         self,
@@ -355,6 +356,7 @@ class Cells(Noun):
         groups: Optional[Mapping[str, Value]] = None,
         integration: Optional[ExactIntegration | SubCellIntegration | Mapping[str, Any] | str] = None,
         islands: Optional[str] = None,
+        strain: Optional[str] = None,
     ) -> None:
         self.geometry = geometry
         self.mesh = mesh
@@ -365,6 +367,7 @@ class Cells(Noun):
         self.groups = groups
         self.integration = integration
         self.islands = islands
+        self.strain = strain
 
 
 class CellsGrid(Noun):
@@ -725,7 +728,7 @@ class DividedGmshMesh(Noun):
 
 class ElasticPlastic(Noun):
     """Isotropic, elastic-plastic: von Mises with isotropic and kinematic hardening; with `strain = "finite"` in
-    logarithmic strains. Not in plane stress.
+    logarithmic strains.
 
     youngs_modulus: Young's modulus, a force per area.
     poissons_ratio: Poisson's ratio, above -1 and below 0.5.

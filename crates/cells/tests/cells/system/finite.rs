@@ -3,7 +3,7 @@
 use super::contacts::{moved, rigid};
 use super::*;
 use signorini_cells::shapes::ball;
-use signorini_cells::{SolidMaterial, StressLaw};
+use signorini_cells::{BoundaryPoint, SolidMaterial, StressLaw};
 use signorini_contact::Coulomb;
 use signorini_geometry::Matrix;
 use signorini_geometry::implicit::HalfSpace;
@@ -131,10 +131,13 @@ fn a_tube_is_shrunk_on_a_shaft() {
     let material = CellMaterial { solid: solid.into(), modulus: None, space: Space::PlaneStrain };
     let domain = ring(2.0).without(ring(1.0));
     let body = CellBody::new(Arc::new(domain), tree, Discretisation::of_degree(4), material).unwrap();
-    let places =
-        vec![("left", Place::low(0)), ("bottom", Place::low(1)), ("bore", Place::boundary(|p| p.x.norm() < 1.5))];
+    let places = vec![
+        ("left", Place::low(0)),
+        ("bottom", Place::low(1)),
+        ("bore", Place::boundary(|p: &BoundaryPoint<2>| p.x.norm() < 1.5)),
+    ];
     let body = CellSolid::new("tube", body, &named(places)).unwrap();
-    let shaft = rigid("shaft", Sphere { centre: Point::<3>::zeros(), radius: 1.25 }, moved(v(0.0, 0.0, 0.0)));
+    let shaft = rigid("shaft", Sphere { center: Point::<3>::zeros(), radius: 1.25 }, moved(v(0.0, 0.0, 0.0)));
     let contact = Contact::new(
         "fit",
         (part(0, "bore"), &body),

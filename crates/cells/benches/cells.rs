@@ -25,7 +25,7 @@ fn run(degree: usize, n: usize) {
     let region: Arc<dyn Region<3>> = Arc::new(Domain::shape(ball(V::z(), 1.0)));
     let tree = CellTree::new(Aabb::new(V::zeros(), V::new(1.0, 1.0, 1.0)), [n; 3]).expect("cells");
     let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
-    let material = CellMaterial { elastic, modulus: None, space: Space::Solid };
+    let material = CellMaterial { solid: elastic.into(), modulus: None, space: Space::Solid };
     let body = CellBody::new(region, tree, Discretisation::of_degree(degree), material).expect("a body");
     let sides = [("left", Place::low(0)), ("front", Place::low(1)), ("top", Place::high(2))];
     let places: BTreeMap<String, Place<3>> = sides.map(|(name, side)| (name.to_string(), side)).into();

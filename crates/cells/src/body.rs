@@ -15,8 +15,8 @@ use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
 use crate::space::{Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
 use rayon::prelude::*;
-use signorini_fem::elastic::{Elastic, Space};
 use signorini_geometry::{Aabb, Point};
+use signorini_material::{Elastic, Space};
 use std::sync::Arc;
 
 /// A body of finite cells.
@@ -129,7 +129,7 @@ impl<const D: usize> CellBody<D> {
     }
 
     pub fn elastic(&self) -> &Elastic {
-        &self.material.elastic
+        self.material.elastic()
     }
 
     /// Cells with material.

@@ -10,6 +10,7 @@
 //! Around an axis nothing leaves it: the unknowns of that are tied to nothing and stay zero, since a hoop strain `u/r`
 //! there would have infinite energy.
 
+mod constitution;
 mod foot;
 mod hold;
 mod linear;
@@ -18,6 +19,7 @@ mod master;
 mod shown;
 mod surface;
 mod weak;
+mod weak_by_law;
 
 use crate::body::CellBody;
 use crate::cell::Site;
@@ -33,14 +35,14 @@ use master::BoundaryMaster;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use shown::Shown;
-use signorini_fem::elastic::Space;
 use signorini_geometry::{Matrix, Point, Vector};
+use signorini_material::{History, Space};
 use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Direction, Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack,
-    SlavePoint, Subspaces,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Direction,
+    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack, SlavePoint,
+    Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -60,8 +62,11 @@ const MANY_IN_THE_PLANE: usize = 200_000;
 pub struct CellSolid<const D: usize> {
     name: String,
     body: CellBody<D>,
-    /// Of each cell.
+    /// Of each cell at rest.
     stiffness: Vec<Arc<DMatrix<f64>>>,
+    /// Of each cut cell, where the law is not linear: of what is not material.
+    fictitious: Vec<Option<DMatrix<f64>>>,
+    history: History,
     /// The points of all surfaces.
     points: Vec<Site<D>>,
     surfaces: BTreeMap<String, Surface<D>>,
@@ -84,7 +89,7 @@ impl<const D: usize> CellSolid<D> {
         let mut stiffness = body.stiffness();
         if is_zero.contains(&true) {
             for (cell, matrix) in stiffness.iter_mut().enumerate() {
-                untie(&body.unknowns_of(cell), &is_zero, matrix);
+                untie(&body.unknowns_of(cell), &is_zero, Arc::make_mut(matrix));
             }
         }
         let whole = Place::boundary(|_| true);
@@ -113,10 +118,15 @@ impl<const D: usize> CellSolid<D> {
         let sheets = Sheets::new(&body, &points);
         let linear = LinearFields::new(&body);
         let size = extent(&body);
+        let fictitious = if body.law().is_linear() { Vec::new() } else { body.fictitious() };
+        let points_of = |cell: &crate::cell::Cell<D>| body.volume_points(cell).len();
+        let history = History::new(body.law(), body.cells().iter().map(points_of));
         Ok(CellSolid {
             name: name.to_string(),
             body,
             stiffness,
+            fictitious,
+            history,
             points,
             surfaces,
             sheets,
@@ -186,12 +196,11 @@ fn vanishing<const D: usize>(body: &CellBody<D>) -> Vec<bool> {
 }
 
 /// Leaves of the rows and columns of some unknowns the diagonal only.
-fn untie(unknowns: &[u32], which: &[bool], matrix: &mut Arc<DMatrix<f64>>) {
+fn untie(unknowns: &[u32], which: &[bool], matrix: &mut DMatrix<f64>) {
     let places: Vec<usize> = (0..unknowns.len()).filter(|i| which[unknowns[*i] as usize]).collect();
     if places.is_empty() {
         return;
     }
-    let matrix = Arc::make_mut(matrix);
     for i in places {
         let own = matrix[(i, i)];
         matrix.row_mut(i).fill(0.0);
@@ -229,6 +238,18 @@ fn normal_now<const D: usize>(normal: &Vector<D>, gradient: &Matrix<D>) -> Vecto
     b.cross(&c) * n[0] + c.cross(&a) * n[1] + a.cross(&b) * n[2]
 }
 
+/// The derivative of [`normal_now`] as the gradient changes by `e_i ⊗ slope`.
+fn normal_change<const D: usize>(normal: &Vector<D>, gradient: &Matrix<D>, i: usize, slope: &Vector<D>) -> Vector<3> {
+    let n = spatial(normal);
+    let column = |k: usize| {
+        let own = |j: usize| if j < D && k < D { gradient[(j, k)] } else { 0.0 };
+        Vector::<3>::from_fn(|j, _| own(j) + if j == k { 1.0 } else { 0.0 })
+    };
+    let [a, b, c] = [column(0), column(1), column(2)];
+    let [da, db, dc] = spatial(&Point::<D>::from(*slope)).data.0[0].map(|s| axis(i) * s);
+    (db.cross(&c) + b.cross(&dc)) * n[0] + (dc.cross(&a) + c.cross(&da)) * n[1] + (da.cross(&b) + a.cross(&db)) * n[2]
+}
+
 impl<const D: usize> Body for CellSolid<D> {
     fn name(&self) -> &str {
         &self.name
@@ -239,15 +260,18 @@ impl<const D: usize> Body for CellSolid<D> {
     }
 
     fn start(&self) -> BodyState {
-        BodyState { configuration: vec![0.0; self.unknowns()], internal: Vec::new() }
+        BodyState { configuration: vec![0.0; self.unknowns()], internal: self.history.start(self.body.law()) }
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
         let configuration = state.configuration.iter().zip(step).map(|(u, s)| u + share * s).collect();
-        BodyState { configuration, internal: Vec::new() }
+        BodyState { configuration, internal: state.internal.clone() }
     }
 
     fn internal(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
+        if !self.body.law().is_linear() {
+            return self.integrated(state, order, out);
+        }
         let u = &state.configuration;
         let unknowns: Vec<Vec<u32>> = (0..self.stiffness.len()).map(|c| self.body.unknowns_of(c)).collect();
         let forces: Vec<Vec<f64>> = (unknowns.par_iter().zip(&self.stiffness))
@@ -365,7 +389,9 @@ impl<const D: usize> Body for CellSolid<D> {
     }
 
     fn fields(&self, state: &BodyState) -> BodyFields {
-        self.shown.get_or_init(|| Shown::new(&self.body)).fields(&self.body, &state.configuration)
+        let fitted = self.fitted(state);
+        let shown = |cell: usize, x: &Point<D>| self.shown_at(fitted.as_ref(), cell, x, &state.configuration);
+        self.shown.get_or_init(|| Shown::new(&self.body)).fields(&shown, fitted.is_some())
     }
 }
 
@@ -373,7 +399,11 @@ impl<const D: usize> Kinematics for CellSolid<D> {}
 
 impl<const D: usize> Elimination for CellSolid<D> {
     fn is_linear(&self) -> bool {
-        true
+        self.body.law().is_linear()
+    }
+
+    fn cliques(&self) -> Vec<Vec<u32>> {
+        (0..self.body.cells().len()).map(|cell| self.body.unknowns_of(cell)).collect()
     }
 
     fn places(&self) -> Vec<[f64; 3]> {
@@ -382,13 +412,16 @@ impl<const D: usize> Elimination for CellSolid<D> {
     }
 
     fn subspaces(&self) -> Option<Subspaces<'_>> {
+        if !self.body.law().is_linear() {
+            return None;
+        }
         let own = self.stiffness.iter().enumerate();
         let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
         Some(Subspaces { stiffness, sets: self.body.schwarz_sets() })
     }
 
     fn many_unknowns(&self) -> Option<usize> {
-        Some(if D == 3 { MANY_UNKNOWNS } else { MANY_IN_THE_PLANE })
+        self.body.law().is_linear().then_some(if D == 3 { MANY_UNKNOWNS } else { MANY_IN_THE_PLANE })
     }
 
     fn hold_weakly(
@@ -402,7 +435,10 @@ impl<const D: usize> Elimination for CellSolid<D> {
         let surface = self.surface(on)?;
         let HeldBy::Terms(terms) = &surface.held else { return Ok(None) };
         let terms = terms.get_or_init(|| WeakHold::new(self, self.points_of(surface)));
-        Ok(Some(self.add_terms(terms, hold, &state.configuration, order, out)))
+        if self.body.law().is_linear() {
+            return Ok(Some(self.add_terms(terms, hold, &state.configuration, order, out)));
+        }
+        self.add_terms_by_law(terms, hold, state, order, out).map(Some)
     }
 }
 
@@ -422,15 +458,18 @@ impl<const D: usize> ContactSides for CellSolid<D> {
         Ok(Some((sites, (2.0 * far).max(1.0) * spacing)))
     }
 
-    /// Of the cell that controls the stress there.
+    /// Of the cell that controls the stress there: nominal at finite strain, none of a law with history.
     fn traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<Direction> {
         let point = &self.points[site.patch as usize];
         let cell = self.body.cells()[point.cell].stress_cell;
+        if !self.body.law().is_linear() {
+            return self.traction_by_law(cell, point, state);
+        }
         let mut t = Tabulation::default();
         self.body.functions_at(cell, &point.x, &mut t);
         let u = &state.configuration;
         let mut out = Direction::default();
-        for (k, value) in self.body.tractions(&point.x, &point.normal, &t).iter().enumerate() {
+        for (k, value) in self.body.tractions(cell, point, &t).iter().enumerate() {
             let function = self.body.cells()[cell].functions[k / D];
             if let Some(unknown) = self.unknown(function, k % D) {
                 let value = spatial(&Point::<D>::from(*value));
@@ -449,14 +488,13 @@ impl<const D: usize> ContactSides for CellSolid<D> {
 
 impl<const D: usize> Slack for CellSolid<D> {}
 
-impl<const D: usize> Constitution for CellSolid<D> {}
-
 impl<const D: usize> BoxOfMaterial for CellSolid<D> {
     fn samples(&self, state: &BodyState) -> Option<Samples> {
-        Some(self.body.samples(&state.configuration))
+        let fitted = self.fitted(state);
+        Some(self.body.samples_of(&|cell, x| self.shown_at(fitted.as_ref(), cell, x, &state.configuration)))
     }
 
     fn means(&self, state: &BodyState) -> Option<mechanics::Means> {
-        self.body.means(&state.configuration)
+        self.body.means_of(&state.configuration, &|cell| self.normal_stresses(cell, state))
     }
 }

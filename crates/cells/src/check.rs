@@ -6,7 +6,7 @@ use crate::legendre::MAX_DEGREE;
 use crate::memory::check_memory;
 use crate::region::{Integration, Region};
 use crate::tree::CellTree;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, Space};
 
 /// # Errors
 /// Constants out of range, more cells than the memory holds, values of the shape that are not finite.
@@ -23,7 +23,7 @@ pub(crate) fn check<const D: usize>(
     if !(0.0..1.0).contains(&discretisation.fictitious) {
         return Err(CellsError::Fictitious { value: discretisation.fictitious });
     }
-    let Elastic { youngs_modulus, poissons_ratio } = material.elastic;
+    let Elastic { youngs_modulus, poissons_ratio } = *material.elastic();
     if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
         return Err(CellsError::Value { name: "youngs_modulus", value: youngs_modulus, must: "must be positive" });
     }

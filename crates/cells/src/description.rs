@@ -22,9 +22,9 @@ use crate::tree::CellTree;
 use crate::voxels::ModulusImage;
 pub use shape::Shape;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::{Elastic, Space};
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::{Aabb, Point, Vector};
+use signorini_material::{SolidMaterial, Space};
 use signorini_mechanics::Body;
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -100,8 +100,8 @@ pub struct Description {
     pub fictitious: f64,
     pub pieces: Pieces,
     pub islands: Islands,
-    pub elastic: Elastic,
-    /// A factor of Young's modulus, with its largest value.
+    pub material: SolidMaterial,
+    /// A factor of all moduli, with its largest value.
     pub modulus: Option<(Scalar, f64)>,
     /// The whole recovered boundary is always there as `boundary`.
     pub places: BTreeMap<String, Part>,
@@ -111,7 +111,14 @@ pub struct Description {
 
 impl Description {
     /// With what serves most bodies.
-    pub fn new(name: &str, geometry: Geometry, space: Space, cells: Cells, degree: usize, elastic: Elastic) -> Self {
+    pub fn new(
+        name: &str,
+        geometry: Geometry,
+        space: Space,
+        cells: Cells,
+        degree: usize,
+        material: impl Into<SolidMaterial>,
+    ) -> Self {
         let Discretisation { products, integration, fictitious, pieces, islands, .. } =
             Discretisation::<3>::of_degree(degree);
         Description {
@@ -127,7 +134,7 @@ impl Description {
             fictitious,
             pieces,
             islands,
-            elastic,
+            material: material.into(),
             modulus: None,
             places: BTreeMap::new(),
             memory: f64::INFINITY,
@@ -191,7 +198,10 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         products: d.products,
         integration: d.integration,
         volume_points: match &d.geometry {
-            Geometry::Shape(Shape::Image { .. }) | Geometry::Moduli(_) => VolumePoints::Fitted,
+            // Fitted points lie outside of the material too, where a law that is not linear has nothing to say.
+            Geometry::Shape(Shape::Image { .. }) | Geometry::Moduli(_) if d.material.law().is_linear() => {
+                VolumePoints::Fitted
+            }
             _ => VolumePoints::InMaterial,
         },
         fictitious: d.fictitious,
@@ -201,7 +211,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         refine_narrow,
         memory: d.memory,
     };
-    let body = CellBody::new(region, tree, setup, CellMaterial { elastic: d.elastic, modulus, space: d.space })?;
+    let body = CellBody::new(region, tree, setup, CellMaterial { solid: d.material.clone(), modulus, space: d.space })?;
     let (findings, volume, cells) = (body.findings().clone(), body.volume(), body.cells().len());
     let places = d.places.iter().map(|(name, part)| (name.clone(), part.place::<D>())).collect();
     let body = CellSolid::new(&d.name, body, &places)?;

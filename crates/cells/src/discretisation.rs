@@ -7,7 +7,7 @@ use crate::moments::VolumePoints;
 use crate::region::{Integration, Region};
 use crate::space::Products;
 use crate::tree::Leaf;
-use signorini_fem::elastic::{Elastic, Space};
+use signorini_material::{Elastic, SolidMaterial, Space};
 
 /// What is done with pieces of the body that do not hang together with the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,10 +68,17 @@ impl<const D: usize> Discretisation<D> {
 /// What the body is made of.
 #[derive(Clone)]
 pub struct CellMaterial<const D: usize> {
-    pub elastic: Elastic,
-    /// A factor of Young's modulus that varies in space, with its largest value.
+    pub solid: SolidMaterial,
+    /// A factor of all moduli that varies in space, with its largest value.
     pub modulus: Option<(Field<D>, f64)>,
     pub space: Space,
+}
+
+impl<const D: usize> CellMaterial<D> {
+    /// Typical constants of small strain.
+    pub fn elastic(&self) -> &Elastic {
+        self.solid.elastic()
+    }
 }
 
 /// # Errors

@@ -6,8 +6,8 @@ use crate::space::Tabulation;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::{Space, von_mises};
 use signorini_geometry::{Matrix, Point, Vector};
+use signorini_material::{Space, von_mises};
 use signorini_mechanics::{Means, Samples};
 
 /// The state of a body at a point.
@@ -16,12 +16,14 @@ pub struct PointState<const D: usize> {
     pub displacement: Vector<D>,
     /// `∂u_i / ∂x_j`.
     pub gradient: Matrix<D>,
-    /// In space; around an axis the third direction is that around it.
+    /// Cauchy stress, in space; around an axis the third direction is that around it.
     pub stress: Matrix3<f64>,
+    /// Equivalent plastic strain; zero of elastic laws.
+    pub plastic_strain: f64,
 }
 
 impl<const D: usize> CellBody<D> {
-    /// The state at a point of a cell, for coefficients of the functions.
+    /// The state at a point of a cell, for coefficients of the functions; without stress of a law with history.
     pub fn state_at(&self, cell: usize, x: &Point<D>, u: &[f64]) -> PointState<D> {
         let mut t = Tabulation::default();
         self.functions_at(cell, x, &mut t);
@@ -40,7 +42,9 @@ impl<const D: usize> CellBody<D> {
         if self.space() == Space::Axisymmetric {
             in_space[(2, 2)] = if x[0] > 0.0 { displacement[0] / x[0] } else { gradient[(0, 0)] };
         }
-        PointState { displacement, gradient, stress: self.stress_at(x, &in_space) }
+        let is_elastic = !self.law().has_history();
+        let stress = if is_elastic { self.stress_at(x, &in_space) } else { Matrix3::repeat(f64::NAN) };
+        PointState { displacement, gradient, stress, plastic_strain: 0.0 }
     }
 
     /// The same with the stress of a neighbour in a cell with little material.
@@ -54,15 +58,12 @@ impl<const D: usize> CellBody<D> {
     }
 
     /// The body as a piece of a material that fills its box; none around an axis, where a box is a ring.
-    pub fn means(&self, u: &[f64]) -> Option<Means> {
+    /// `stress` gives the integral of the normal stresses (nominal ones at finite strain) over the material of a cell.
+    pub(crate) fn means_of(&self, u: &[f64], stress: &(dyn Fn(usize) -> Vector<3> + Sync)) -> Option<Means> {
         if self.space() == Space::Axisymmetric {
             return None;
         }
-        let of_cell = |c: usize| -> Vector<3> {
-            let points = self.volume_points(&self.cells()[c]);
-            points.iter().map(|(x, w)| self.state_at(c, x, u).stress.diagonal() * *w).sum()
-        };
-        let parts: Vec<Vector<3>> = (0..self.cells().len()).into_par_iter().map(of_cell).collect();
+        let parts: Vec<Vector<3>> = (0..self.cells().len()).into_par_iter().map(stress).collect();
         let bounds = *self.tree().bounds();
         let mut out = Means { stress: (parts.iter().sum::<Vector<3>>() / bounds.volume()).into(), ..Means::default() };
         for k in 0..D {
@@ -86,7 +87,7 @@ impl<const D: usize> CellBody<D> {
     /// Displacement and stress in the middle of equal boxes that fill the box of the cells, as many along each cell of the
     /// grid as the degree; zero where there is no material. The stress of a cell with little material is that of its
     /// neighbour.
-    pub fn samples(&self, u: &[f64]) -> Samples {
+    pub(crate) fn samples_of(&self, shown: &(dyn Fn(usize, &Point<D>) -> PointState<D> + Sync)) -> Samples {
         let bounds = self.tree().bounds();
         let counts: [usize; D] = self.tree().cells().map(|n| n * self.degree());
         let state_in = |number: usize| {
@@ -97,14 +98,14 @@ impl<const D: usize> CellBody<D> {
                 (i as f64 + 0.5) / counts[k] as f64
             }));
             let cell = self.cell_at(&x).filter(|_| self.region.contains(&x))?;
-            Some(self.shown_at(cell, &x, u))
+            Some(shown(cell, &x))
         };
         let states: Vec<Option<PointState<D>>> = (0..counts.iter().product()).into_par_iter().map(state_in).collect();
         let mut out = Samples {
             origin: spatial(&bounds.min).into(),
             spacing: [0.0; 3],
             counts: [0; 3],
-            data: [("material", 1), ("displacement", 3), ("stress", 6), ("von_mises", 1)]
+            data: [("material", 1), ("displacement", 3), ("stress", 6), ("von_mises", 1), ("plastic_strain", 1)]
                 .map(|(name, components)| (name.to_string(), components, Vec::new()))
                 .into(),
         };
@@ -118,6 +119,10 @@ impl<const D: usize> CellBody<D> {
             out.data[1].2.extend(&u);
             out.data[2].2.extend(components(&s));
             out.data[3].2.push(von_mises(&s));
+            out.data[4].2.push(state.as_ref().map_or(0.0, |s| s.plastic_strain));
+        }
+        if !self.law().has_history() {
+            out.data.truncate(4);
         }
         out
     }

@@ -10,7 +10,8 @@
 //! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
 //! - [`moments`]: few points for many; `tensor_integrals`: sums over them, direction by direction.
-//! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals.
+//! - [`discretisation`]: how a body is made of cells; [`body`]: all of this; [`stiffness`]: the elastic integrals;
+//!   `by_law`: forces and tangent of other laws; `stress_fit`: stresses with a history away from their points.
 //! - [`cell_solid`]: the body in a system of bodies of any kind, with its supports, loads and contact; `nitsche`: how its
 //!   recovered boundary is held; [`schwarz`]: the preconditioner.
 //! - [`description`]: the same from plain data, of any dimension.
@@ -18,6 +19,7 @@
 //! - [`fields`]: displacement and stress in the volume and on the boundary.
 
 pub mod body;
+mod by_law;
 pub mod cell;
 pub mod cell_solid;
 mod check;
@@ -44,6 +46,7 @@ pub mod shapes;
 pub mod space;
 mod spread;
 pub mod stiffness;
+mod stress_fit;
 mod tensor_integrals;
 pub mod tree;
 pub mod voxels;
@@ -58,7 +61,7 @@ pub use moments::VolumePoints;
 pub use place::Place;
 pub use region::{BoundaryPoint, Filling, Integration, Region};
 pub use signorini_fem::cut::End;
-pub use signorini_fem::elastic::{Elastic, Space, von_mises};
+pub use signorini_material::{Elastic, SolidMaterial, Space, StressLaw, von_mises};
 pub use space::{Products, Tabulation};
 pub use tree::{CellTree, Leaf};
 

@@ -47,7 +47,7 @@ impl<const D: usize> CellBody<D> {
         let mut t = Tabulation::default();
         for site in sites {
             self.functions_at(cell, &site.x, &mut t);
-            let tractions = self.tractions(&site.x, &site.normal, &t);
+            let tractions = self.tractions(cell, site, &t);
             for k in 0..D {
                 let row = DVector::from_fn(n, |i, _| tractions[i][k] * scale[i]);
                 g.ger(site.weight, &row, &row, 1.0);
@@ -116,10 +116,23 @@ impl RowSpace {
         RowSpace { cell, stress_cell, unknowns, places }
     }
 
+    pub fn cell(&self) -> usize {
+        self.cell
+    }
+
+    pub fn stress_cell(&self) -> usize {
+        self.stress_cell
+    }
+
+    /// Where the unknowns of the cell of stress stand among all.
+    pub fn places(&self) -> &[usize] {
+        &self.places
+    }
+
     pub fn at<const D: usize>(&self, body: &CellBody<D>, site: &Site<D>) -> Rows<'_, D> {
         let mut t = Tabulation::default();
         body.functions_at(self.stress_cell, &site.x, &mut t);
-        let tractions = body.tractions(&site.x, &site.normal, &t);
+        let tractions = body.tractions(self.stress_cell, site, &t);
         if self.cell != self.stress_cell {
             body.functions_at(self.cell, &site.x, &mut t);
         }

@@ -9,8 +9,8 @@ use crate::error::CellsError;
 use crate::region::{BoundaryPoint, Filling};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
-use signorini_fem::elastic::Space;
 use signorini_geometry::{Aabb, Point, Vector};
+use signorini_material::Space;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

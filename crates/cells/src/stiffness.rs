@@ -10,7 +10,7 @@
 //! matrices.
 
 use crate::body::CellBody;
-use crate::cell::Cell;
+use crate::cell::{Cell, Site};
 use crate::moments::box_points;
 use crate::moments::fitted;
 use crate::region::Filling;
@@ -18,8 +18,8 @@ use crate::space::Tabulation;
 use crate::tensor_integrals::TensorFunctions;
 use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
-use signorini_fem::elastic::Space;
 use signorini_geometry::{Point, Vector};
+use signorini_material::{Space, StressLaw};
 use std::sync::Arc;
 
 /// Fictitious stiffness above which that of cut cells stays positive definite whatever rounding leaves of the fitted weights:
@@ -33,8 +33,11 @@ impl<const D: usize> CellBody<D> {
         functions.iter().flat_map(|f| (0..D as u32).map(move |k| D as u32 * f + k)).collect()
     }
 
-    /// The stiffness matrices of all cells.
+    /// The stiffness matrices of all cells, at rest.
     pub fn stiffness(&self) -> Vec<Arc<DMatrix<f64>>> {
+        if !self.is_hooke_at_rest() {
+            return self.stiffness_by_law();
+        }
         let alike = self.is_homogeneous();
         let on_grid = |cell: &&Cell<D>| self.tree.leaves()[cell.leaf].level == 0;
         // Cells of the grid differ in their place only.
@@ -64,6 +67,24 @@ impl<const D: usize> CellBody<D> {
                 Arc::new(inside * (1.0 - alpha) + &*full * alpha)
             })
             .collect()
+    }
+
+    /// Whether the law is that of Hooke at rest, with the typical constants.
+    fn is_hooke_at_rest(&self) -> bool {
+        let law = self.law();
+        !self.solid().varies() && law.fibre_direction().is_none() && !matches!(law, StressLaw::Orthotropic(_))
+    }
+
+    fn stiffness_by_law(&self) -> Vec<Arc<DMatrix<f64>>> {
+        let fictitious = self.fictitious();
+        let start = self.law().start();
+        let of = |cell: usize| {
+            let own = vec![0.0; D * self.cells()[cell].functions.len()];
+            let found = self.material_forces(cell, &own, &|_| &start, true).ok().and_then(|f| f.tangent);
+            let inside = found.unwrap_or_else(|| DMatrix::zeros(own.len(), own.len()));
+            Arc::new(fictitious[cell].as_ref().map_or_else(|| inside.clone(), |f| &inside + f))
+        };
+        (0..self.cells().len()).into_par_iter().map(of).collect()
     }
 
     fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {
@@ -126,7 +147,7 @@ impl<const D: usize> CellBody<D> {
     /// The stiffness from the integrals `G_ac` with `c <= a`.
     fn stiffness_from(&self, mut g: Vec<DMatrix<f64>>) -> DMatrix<f64> {
         let axis = self.material.space == Space::Axisymmetric;
-        let (lambda, mu) = self.material.elastic.lame(self.material.space);
+        let (lambda, mu) = self.material.elastic().lame(self.material.space);
         let channels = D + usize::from(axis);
         let n = g[0].nrows();
         for a in 0..channels {
@@ -177,9 +198,13 @@ impl<const D: usize> CellBody<D> {
         }
     }
 
-    /// The traction `σ(N_j e_b) n` of every unknown of a cell at a point, from its functions there.
-    pub fn tractions(&self, x: &Point<D>, normal: &Vector<D>, t: &Tabulation<D>) -> Vec<Vector<D>> {
-        let (lambda, mu) = self.material.elastic.lame(self.material.space);
+    /// The traction `σ(N_j e_b) n` at rest of every unknown of a cell at a site, from its functions there.
+    pub fn tractions(&self, cell: usize, site: &Site<D>, t: &Tabulation<D>) -> Vec<Vector<D>> {
+        let (x, normal) = (&site.x, &site.normal);
+        if !self.is_hooke_at_rest() {
+            return self.traction_at(cell, site, None).map(|found| found.changes).unwrap_or_default();
+        }
+        let (lambda, mu) = self.material.elastic().lame(self.material.space);
         let factor = self.modulus_factor(x);
         let mut out = Vec::with_capacity(D * t.value.len());
         for (value, gradient) in t.value.iter().zip(&t.gradient) {
@@ -197,8 +222,11 @@ impl<const D: usize> CellBody<D> {
         out
     }
 
-    /// The stress at a point of a cell, from the gradient of the displacement there, in space.
+    /// The Cauchy stress at a point of a cell of an elastic law, from the gradient of the displacement there, in space.
     pub fn stress_at(&self, x: &Point<D>, gradient: &Matrix3<f64>) -> Matrix3<f64> {
-        self.material.elastic.stress(self.material.space, gradient) * self.modulus_factor(x)
+        if !self.solid().is_uniform_hooke() {
+            return self.cauchy_at(x, &(Matrix3::identity() + gradient));
+        }
+        self.material.elastic().stress(self.material.space, gradient) * self.modulus_factor(x)
     }
 }

@@ -10,7 +10,6 @@
 //! - [`grid`]: uniform background grids in one, two and three dimensions, with their nodes.
 //! - [`cells`]: what a membrane is computed on, whatever kind of cells.
 //! - [`cut`]: quadrature on cells that are divided by implicit surfaces: volume, surface and normal.
-//! - [`elastic`]: linear elasticity in the plane, around an axis and in space.
 //! - [`ghost`]: the ghost penalty that keeps small cuts stable.
 
 pub mod adjacency;
@@ -21,7 +20,6 @@ pub mod cells;
 pub mod cells_part;
 pub mod cut;
 pub mod dofs;
-pub mod elastic;
 pub mod ghost;
 pub mod gmsh;
 pub mod graded_mesh;

@@ -29,8 +29,10 @@ pub struct CellsBody {
     pub alpha: Option<Value>,
     /// Treatment of pieces that are not connected to the largest one; `refuse` if left out.
     pub islands: Option<IslandsKey>,
-    /// Material of the body: linear elastic.
+    /// The material of the body.
     pub material: Material,
+    /// Strain measure: `small` or `finite`; `small` if left out.
+    pub strain: Option<String>,
     /// Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z > 0.9`. The
     /// recovered boundary is `boundary`; the sides of the grid are left, right, front, back, bottom and top. If contact
     /// names the whole body, it includes the boundary and the sides, except those with a support.

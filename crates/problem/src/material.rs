@@ -34,7 +34,7 @@ pub enum Material {
     /// strain.
     Orthotropic(Orthotropic),
     /// Isotropic, elastic-plastic: von Mises with isotropic and kinematic hardening; with `strain = "finite"` in logarithmic
-    /// strains. Not in plane stress.
+    /// strains.
     ElasticPlastic(ElasticPlastic),
 }
 

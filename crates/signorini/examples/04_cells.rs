@@ -34,6 +34,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         alpha: None,
         islands: None,
         material: Material::LinearElastic(LinearElastic { youngs_modulus: YOUNG.into(), poissons_ratio: 0.3.into() }),
+        strain: None,
         groups: Named::default(),
     };
     problem.bodies.insert("column".into(), Body::Cells(Box::new(body)));

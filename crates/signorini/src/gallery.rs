@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 53] = [
+pub const GALLERY: [Example; 54] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -65,6 +65,7 @@ pub const GALLERY: [Example; 53] = [
     ),
     example!("plate_holes", "a plate with a hole in cells of degree 6, compared with the solution of Kirsch"),
     example!("ball_cells", "a ball of finite cells between two plates, in space"),
+    example!("rubber_tube", "a rubber tube of finite cells crushed by a plate, at finite strain"),
     example!("two_balls", "a ball of finite cells pressed on a ball of finite elements"),
     example!("foot", "a part from an STL file on a cylinder, in finite cells"),
     example!("pore", "a pore that closes by self-contact, in finite cells"),

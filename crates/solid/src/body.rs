@@ -1,11 +1,11 @@
 //! Bodies and their boundaries.
 
-use crate::material::{Elastic, Space};
 use signorini_contact::{ContactSurface, FaceForm, FaceMaps, FacePoint, ShapeFunction, SplineFace};
 use signorini_fem::cell_map::CellMap;
 use signorini_fem::hierarchic::{Mode, Values};
 use signorini_fem::{CellShape, DofMap, Local, Mesh, Side};
 use signorini_geometry::Point;
+use signorini_material::{Elastic, Space};
 use std::sync::Arc;
 
 /// An elastic body. Its unknowns are `first + D f + i`, function `f` in direction `i`.

@@ -24,16 +24,13 @@ mod traction;
 pub use edge::{EdgeError, EdgeOf};
 
 use crate::body::Bodies;
-use crate::law::{StrainError, StressLaw};
-use crate::material::Space;
-use crate::solid_material::SolidMaterial;
 use crate::stiffness::{Table, stiffness};
 use edge::EdgeCurve;
 use faces::Faces;
-use history::History;
 use rayon::prelude::*;
 use signorini_fem::{DofMap, Group, Mesh, MeshError};
 use signorini_geometry::Point;
+use signorini_material::{History, SolidMaterial, Space, StrainError, StressLaw};
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{

@@ -7,13 +7,13 @@
 //! helped in this way, and splines of degree 2 and more, whose cells have few functions of their own, must not be: for a material
 //! that hardly compresses they are better of a high degree.
 
-use crate::material::{Elastic, Space};
 use nalgebra::{DMatrix, Matrix3};
 use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;
 use signorini_fem::small::{determinant, inverse};
 use signorini_fem::{CellBasis, CellShape, DofMap, Local, Mesh};
 use signorini_geometry::Point;
+use signorini_material::{Elastic, Space};
 
 /// Poisson's ratio from which the divergence is projected on cells of any degree.
 pub const NEARLY_INCOMPRESSIBLE: f64 = 0.4;

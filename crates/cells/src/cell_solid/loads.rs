@@ -1,11 +1,13 @@
-//! Loads in the volume of the material and on places of its boundary, on the reference configuration.
+//! Loads in the volume of the material and on places of its boundary, on the reference configuration; pressures at finite strain
+//! on the current area `cof(F) N`, by the polynomials of each cell, so that their work is that of the volume.
 
-use super::CellSolid;
+use super::{CellSolid, normal_change, normal_now};
 use crate::cell::Site;
 use crate::shapes::spatial;
 use crate::space::Tabulation;
 use rayon::prelude::*;
 use signorini_geometry::{Point, Vector};
+use signorini_material::Space;
 use signorini_mechanics::{Contribution, Load, Order, PlaceError};
 
 impl<const D: usize> CellSolid<D> {
@@ -38,6 +40,10 @@ impl<const D: usize> CellSolid<D> {
             }
             Load::Traction(traction) => {
                 self.on_sites(self.points_of(self.surface(on)?), &|s| traction(&spatial(&s.x)), out);
+                Ok(())
+            }
+            Load::Pressure(pressure) if !self.body.law().is_small_strain() => {
+                self.follower_pressure(self.points_of(self.surface(on)?), pressure, u, order, out);
                 Ok(())
             }
             Load::Pressure(pressure) => {
@@ -104,6 +110,51 @@ impl<const D: usize> CellSolid<D> {
             let force = traction(site) * site.weight;
             self.body.functions_at(site.cell, &site.x, &mut t);
             self.push(site.cell, &t.value, &force, &mut out.forces);
+        }
+    }
+
+    fn follower_pressure(
+        &self,
+        sites: &[Site<D>],
+        pressure: &dyn Fn(&Point<3>) -> f64,
+        u: &[f64],
+        order: Order,
+        out: &mut Contribution,
+    ) {
+        let around = self.body.space() == Space::Axisymmetric;
+        let mut t = Tabulation::default();
+        // Points of a cell follow each other.
+        for own in sites.chunk_by(|a, b| a.cell == b.cell) {
+            let unknowns = self.body.unknowns_of(own[0].cell);
+            let n = unknowns.len();
+            let mut block = vec![0.0; if order == Order::Second { n * n } else { 0 }];
+            for site in own {
+                self.body.functions_at(site.cell, &site.x, &mut t);
+                let (moved, gradient) = self.displacement(site.cell, &t, u);
+                let size = site.weight * pressure(&spatial(&site.x));
+                // The circumference grows with the radius.
+                let wider = if around { 1.0 + moved[0] / site.x[0] } else { 1.0 };
+                let normal = normal_now(&site.normal, &gradient);
+                self.push(site.cell, &t.value, &(normal * (-size * wider)), &mut out.forces);
+                if order == Order::First {
+                    continue;
+                }
+                let mut change: Vec<Vector<3>> = Vec::with_capacity(n);
+                for (value, slope) in t.value.iter().zip(&t.gradient) {
+                    for i in 0..D {
+                        let grown = if around && i == 0 { value / site.x[0] } else { 0.0 };
+                        change.push(normal_change(&site.normal, &gradient, i, slope) * wider + normal * grown);
+                    }
+                }
+                for row in (0..n).filter(|k| !self.is_zero[unknowns[*k] as usize]) {
+                    for column in (0..n).filter(|k| !self.is_zero[unknowns[*k] as usize]) {
+                        block[row * n + column] += size * t.value[row / D] * change[column][row % D];
+                    }
+                }
+            }
+            if order == Order::Second {
+                out.add_block(&unknowns, &block);
+            }
         }
     }
 

@@ -10,8 +10,8 @@ use crate::fields::{PointState, components};
 use crate::region::Filling;
 use crate::shapes::spatial;
 use rayon::prelude::*;
-use signorini_fem::elastic::von_mises;
 use signorini_geometry::Point;
+use signorini_material::von_mises;
 use signorini_mechanics::BodyFields;
 use std::collections::BTreeMap;
 
@@ -44,18 +44,26 @@ impl<const D: usize> Shown<D> {
         out
     }
 
-    /// Displacement and stress at the points; the stress of a cell with little material is that of its neighbour.
-    pub fn fields(&self, body: &CellBody<D>, u: &[f64]) -> BodyFields {
-        let states: Vec<PointState<D>> = self.points.par_iter().map(|(cell, x)| body.shown_at(*cell, x, u)).collect();
+    /// What is shown of the points, of which `has_plastic_strain` tells whether they have one.
+    pub fn fields(
+        &self,
+        shown: &(dyn Fn(usize, &Point<D>) -> PointState<D> + Sync),
+        has_plastic_strain: bool,
+    ) -> BodyFields {
+        let states: Vec<PointState<D>> = self.points.par_iter().map(|(cell, x)| shown(*cell, x)).collect();
         let stress = states.iter().flat_map(|s| components(&s.stress)).collect();
         let equivalent = states.iter().map(|s| von_mises(&s.stress)).collect();
-        BodyFields {
+        let mut out = BodyFields {
             points: self.points.iter().map(|(_, x)| spatial(x)).collect(),
             displacement: states.iter().map(|s| spatial(&s.displacement)).collect(),
             cells: self.cells.clone(),
             point_data: vec![("stress".into(), 6, stress), ("von_mises".into(), 1, equivalent)],
             cell_data: Vec::new(),
+        };
+        if has_plastic_strain {
+            out.point_data.push(("plastic_strain".into(), 1, states.iter().map(|s| s.plastic_strain).collect()));
         }
+        out
     }
 }
 

@@ -16,17 +16,17 @@ use signorini_mechanics::{Contribution, Hold, Order};
 use std::sync::OnceLock;
 
 /// The points of a place in one cell.
-struct Group<const D: usize> {
-    rows: RowSpace,
-    sites: Vec<Site<D>>,
-    gamma: f64,
+pub(super) struct Group<const D: usize> {
+    pub rows: RowSpace,
+    pub sites: Vec<Site<D>>,
+    pub gamma: f64,
     /// The terms in `u` of each component, made when they are first asked for.
     matrices: [OnceLock<DMatrix<f64>>; D],
 }
 
 /// A place that is held.
 pub(super) struct WeakHold<const D: usize> {
-    groups: Vec<Group<D>>,
+    pub groups: Vec<Group<D>>,
 }
 
 impl<const D: usize> WeakHold<D> {

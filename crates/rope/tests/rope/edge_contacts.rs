@@ -17,7 +17,7 @@ use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
 use signorini_rope::section::Stiffness;
-use signorini_solid::material::Elastic;
+use signorini_solid::Elastic;
 use signorini_solid::{EdgeOf, SolidBody, Space, StressLaw};
 use std::collections::BTreeMap;
 use std::sync::Arc;

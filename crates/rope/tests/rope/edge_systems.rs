@@ -14,7 +14,7 @@ use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::curve_pair::CurveContact;
 use signorini_rope::path::Path;
-use signorini_solid::material::Elastic;
+use signorini_solid::Elastic;
 use signorini_solid::{EdgeOf, SolidBody, Space, StressLaw};
 use std::collections::BTreeMap;
 use std::sync::Arc;

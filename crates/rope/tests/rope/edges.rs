@@ -9,7 +9,7 @@ use signorini_mechanics::interaction::Interaction;
 use signorini_mechanics::{Enforcement, Part};
 use signorini_rope::curve_pair::blend::Blend;
 use signorini_rope::curve_pair::contact::{CurveContact, Form, Penalties};
-use signorini_solid::material::Elastic;
+use signorini_solid::Elastic;
 use signorini_solid::{EdgeError, EdgeOf, SolidBody, Space, StressLaw};
 use std::collections::BTreeMap;
 use std::sync::Arc;

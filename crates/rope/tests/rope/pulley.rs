@@ -13,7 +13,7 @@ use signorini_rope::centreline::{Closure, Continuity};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::Path;
-use signorini_solid::material::Elastic;
+use signorini_solid::Elastic;
 use signorini_solid::{SolidBody, Space, StressLaw};
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -4,8 +4,8 @@ use crate::fields::{FieldArray, Fields};
 use crate::report::vector;
 use nalgebra::Matrix3;
 use signorini_fem::CellShape;
-use signorini_fem::elastic::von_mises;
 use signorini_geometry::Vector;
+use signorini_material::von_mises;
 use signorini_mechanics::BodyFields;
 use std::collections::HashMap;
 

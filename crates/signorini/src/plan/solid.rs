@@ -17,7 +17,7 @@ use super::planner::Planner;
 use crate::problem::{self, CaseError, KeyPath, SolidMesh};
 use crate::report::Warning;
 use signorini_fem::Mesh;
-use signorini_solid::SolidMaterial;
+use signorini_material::SolidMaterial;
 
 impl Planner<'_> {
     /// The cells of a solid, the degree of its functions, and what it is made of.
@@ -29,7 +29,7 @@ impl Planner<'_> {
         warnings: &mut Vec<Warning>,
     ) -> Result<(Mesh<D>, usize, SolidMaterial), CaseError> {
         let problem = self.problem;
-        let material = self.material(key)?;
+        let material = self.material(key.strain.as_ref(), &key.material)?;
         let stated = match &key.degree {
             None => None,
             Some(d) if (1..=8).contains(d) => Some(*d as usize),

@@ -42,7 +42,7 @@ impl Strained {
 pub fn is_small(problem: &Problem, body: &str) -> bool {
     match problem.bodies.get(body) {
         Some(Body::Solid(solid)) => solid.strain.as_deref() != Some("finite"),
-        Some(Body::Cells(_)) => true,
+        Some(Body::Cells(cells)) => cells.strain.as_deref() != Some("finite"),
         _ => false,
     }
 }

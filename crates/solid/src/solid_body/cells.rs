@@ -7,12 +7,12 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::law::{Response, StrainError, StressLaw, Tensor};
-use crate::material::{Elastic, Space};
 use crate::stiffness::{Table, pressures, projects};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::small::{determinant, inverse};
+use signorini_material::law::{Response, StrainError, StressLaw, Tensor};
+use signorini_material::{Elastic, Space};
 use signorini_mechanics::{BodyError, BodyState, Contribution, Order};
 
 /// Radii below this share of the size of the body are on the axis.
@@ -162,11 +162,11 @@ impl<const D: usize> SolidBody<D> {
             let f = at.deformation(q, &displacement);
             let (elastic, law) = &at.laws[q];
             if self.bodies.space == Space::PlaneStress {
-                responses.push(law.plane_stress(elastic, &f)?);
+                responses.push(law.plane_stress(elastic, &f, self.history.at(&state.internal, cell, q))?);
                 continue;
             }
             law.check(&f)?;
-            responses.push(law.deviatoric(elastic, &f, self.history.at(state, cell, q)));
+            responses.push(law.deviatoric(elastic, &f, self.history.at(&state.internal, cell, q)));
             dilatations.push(law.dilatation(&f));
         }
         // Volumetric part: pressure at each point, and how it changes with the dilatation.

@@ -2,7 +2,7 @@
 
 use super::SolidBody;
 use super::edge::{EDGES, EdgeCurve, EdgeError, EdgeOf, PlacedEdge};
-use crate::material::Space;
+use signorini_material::Space;
 use signorini_mechanics::Site;
 use std::collections::BTreeMap;
 

@@ -2,14 +2,14 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::law::StressLaw;
-use crate::material::{Elastic, Space, von_mises};
 use crate::stiffness::Table;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::hierarchic::Values;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::{Point, Vector};
+use signorini_material::StressLaw;
+use signorini_material::{Elastic, Space, von_mises};
 use signorini_mechanics::{BodyFields, BodyState};
 use std::collections::HashMap;
 
@@ -119,34 +119,24 @@ impl<const D: usize> SolidBody<D> {
             .map(|q| {
                 let f = at.deformation(q, &gradients);
                 let (elastic, law) = &at.laws[q];
-                let history = self.history.at(state, cell, q);
+                let history = self.history.at(&state.internal, cell, q);
                 let stress = if plane_stress {
-                    law.plane_stress(elastic, &f).map(|r| r.stress).unwrap_or_default()
+                    law.plane_stress(elastic, &f, history).map(|r| r.stress).unwrap_or_default()
                 } else {
                     law.deviatoric(elastic, &f, history).stress
                         + law.dilatation(&f).stress * pressure(q, &f, &projected)
                 };
-                let piola = Matrix3::from_fn(|i, j| stress[3 * i + j]);
-                // In plane stress the thickness changes as well, with no stress across.
-                let cauchy = match law.is_small_strain() {
-                    true => piola,
-                    false => piola * f.transpose() / self.volume_ratio((elastic, law), &f),
-                };
+                let cauchy = law.cauchy(elastic, self.bodies.space, &f, &stress, history);
                 Shown {
                     x: spatial(&self.body().mesh.position(cell, &table.map[q])),
                     displacement: moved::<D>(&table.basis[q], &own),
                     stress: cauchy,
-                    plastic_strain: law.plastic(elastic, &f, history).map_or(0.0, |point| point.history[0]),
+                    plastic_strain: law
+                        .plastic(elastic, self.bodies.space, &f, history)
+                        .map_or(0.0, |point| point.history[0]),
                 }
             })
             .collect()
-    }
-
-    fn volume_ratio(&self, (elastic, law): (&Elastic, &StressLaw), f: &Matrix3<f64>) -> f64 {
-        let across = if self.bodies.space == Space::PlaneStress { law.stretch_across(elastic, f) } else { f[(2, 2)] };
-        let mut f = *f;
-        f[(2, 2)] = across;
-        f.determinant()
     }
 
     fn projected_pressure(&self, cell: usize, to: &Table, own: &DVector<f64>) -> Option<DVector<f64>> {

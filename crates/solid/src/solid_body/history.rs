@@ -5,46 +5,11 @@
 
 use super::SolidBody;
 use super::spatial::spatial;
-use crate::law::{Plastic, StressLaw};
-use crate::material::{Elastic, Space};
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
+use signorini_material::law::{Plastic, StressLaw};
+use signorini_material::{Elastic, Space};
 use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
-
-/// Where the history of each point stands in the internal numbers.
-#[derive(Clone, Default)]
-pub(super) struct History {
-    /// Variables of a point; none of elastic laws.
-    count: usize,
-    /// The first point of each cell, and the number of all.
-    first: Vec<usize>,
-}
-
-impl History {
-    /// The places of the variables of a law in cells with so many points.
-    pub fn new(law: &StressLaw, points: impl Iterator<Item = usize>) -> Self {
-        let count = law.start().len();
-        let mut first = vec![0];
-        if count > 0 {
-            points.for_each(|n| first.push(first[first.len() - 1] + n));
-        }
-        History { count, first }
-    }
-
-    /// The internal numbers at the start.
-    pub fn start(&self, law: &StressLaw) -> Vec<f64> {
-        law.start().repeat(self.first[self.first.len() - 1])
-    }
-
-    /// The history of a point of a cell.
-    pub fn at<'a>(&self, state: &'a BodyState, cell: usize, q: usize) -> &'a [f64] {
-        if self.count == 0 {
-            return &[];
-        }
-        let start = self.count * (self.first[cell] + q);
-        &state.internal[start..start + self.count]
-    }
-}
 
 impl<const D: usize> SolidBody<D> {
     /// What the points of a cell of a law with history came to, with their weights; nothing of elastic laws.
@@ -53,7 +18,7 @@ impl<const D: usize> SolidBody<D> {
         let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
         let of = |(q, (elastic, law)): (usize, &(Elastic, StressLaw))| {
             let f: Matrix3<f64> = at.deformation(q, &displacement);
-            let found = law.plastic(elastic, &f, self.history.at(state, cell, q))?;
+            let found = law.plastic(elastic, self.space(), &f, self.history.at(&state.internal, cell, q))?;
             Some((at.weights[q], found))
         };
         at.laws.iter().enumerate().filter_map(of).collect()

@@ -6,13 +6,13 @@
 use super::projection::vertices;
 use super::spatial::spatial;
 use super::{SolidBody, axis};
-use crate::material::Space;
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, FacePoint, ShapeFunction};
 use signorini_fem::hierarchic::Values;
 use signorini_fem::rules::rule;
 use signorini_fem::small::determinant;
 use signorini_geometry::{Point, Vector};
+use signorini_material::Space;
 use signorini_mechanics::{Contribution, Load, Order, PlaceError};
 use std::f64::consts::TAU;
 

@@ -10,9 +10,9 @@
 //! `δJ ω = ∫ 2 (r·δr) ω - δr (r·ω) - r (δr·ω)`, `δω = -J⁻¹ δJ ω`.
 
 use super::{SolidBody, axis};
-use crate::material::Space;
 use nalgebra::DMatrix;
 use signorini_geometry::{Matrix, Vector};
+use signorini_material::Space;
 use signorini_mechanics::{Contribution, Order, PlaceError};
 use std::collections::BTreeMap;
 

@@ -4,12 +4,12 @@ use super::SolidBody;
 use super::cells::Gradients;
 use super::faces::Faces;
 use super::spatial::spatial;
-use crate::law::StressLaw;
-use crate::material::{Elastic, Space};
 use crate::stiffness::{Table, traction};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use signorini_fem::Local;
 use signorini_geometry::Point;
+use signorini_material::StressLaw;
+use signorini_material::{Elastic, Space};
 use signorini_mechanics::{BodyState, Direction, Function, Site};
 
 impl<const D: usize> SolidBody<D> {
@@ -58,7 +58,7 @@ impl<const D: usize> SolidBody<D> {
         let (elastic, law) = &at.laws[0];
         let rest = Matrix3::identity();
         let in_plane_stress = self.bodies.space == Space::PlaneStress;
-        let tangent = match law.plane_stress(elastic, &rest) {
+        let tangent = match law.plane_stress(elastic, &rest, &[]) {
             Ok(plane) if in_plane_stress => plane.tangent,
             _ => law.deviatoric(elastic, &rest, &[]).tangent,
         };

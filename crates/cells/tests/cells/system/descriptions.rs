@@ -111,7 +111,7 @@ fn triangles_images_and_moduli() {
     // Voxels of two moduli in a column: what is soft strains more.
     let image = ImageData { count: vec![1, 2], spacing: vec![1.0; 2], origin: vec![0.0; 2], values: vec![1.0, 4.0] };
     let mut d = described(Geometry::Moduli(image), Space::PlaneStress, 2);
-    d.elastic = Elastic { youngs_modulus: 10.0, poissons_ratio: 0.0 };
+    d.material = Elastic { youngs_modulus: 10.0, poissons_ratio: 0.0 }.into();
     d.bounds = None;
     d.cells = Cells::Size(1.0);
     for (name, end) in [("bottom", End::Low), ("top", End::High)] {

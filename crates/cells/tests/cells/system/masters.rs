@@ -287,7 +287,7 @@ fn elements_on_a_block_of_cells_press_evenly() {
     let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.0 };
     let half = Domain::shape(HalfSpace { point: Point::<2>::new(0.0, 0.37), normal: Vector::<2>::y() });
     let tree = CellTree::new(aabb([0.0, 0.0], [1.0, 0.5]), [2, 2]).unwrap();
-    let material = CellMaterial { elastic, modulus: None, space: Space::PlaneStrain };
+    let material = CellMaterial { solid: elastic.into(), modulus: None, space: Space::PlaneStrain };
     let body = CellBody::new(Arc::new(half), tree, Discretisation::of_degree(2), material).unwrap();
     let places = named(vec![("base", Place::low(1)), ("left", Place::low(0))]);
     let lower = CellSolid::new("lower", body, &places).unwrap();

@@ -4,6 +4,7 @@ mod bodies;
 mod contacts;
 mod descriptions;
 mod discs;
+mod finite;
 mod friction;
 mod images;
 mod iterations;
@@ -32,7 +33,7 @@ fn aabb<const D: usize>(low: [f64; D], high: [f64; D]) -> Aabb<D> {
 }
 
 fn material<const D: usize>(space: Space) -> CellMaterial<D> {
-    CellMaterial { elastic: ELASTIC, modulus: None, space }
+    CellMaterial { solid: ELASTIC.into(), modulus: None, space }
 }
 
 fn cells<const D: usize>(

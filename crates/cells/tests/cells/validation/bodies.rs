@@ -110,7 +110,7 @@ fn voxels_with_a_modulus_each() {
     let voxels = Voxels::new(Point::<2>::zeros(), [0.25, 0.5], [4, 6], values).unwrap();
     let image = ModulusImage::new(voxels).unwrap();
     let material = CellMaterial {
-        elastic: Elastic { youngs_modulus: 2.0, poissons_ratio: 0.0 },
+        solid: Elastic { youngs_modulus: 2.0, poissons_ratio: 0.0 }.into(),
         modulus: Some(image.modulus()),
         space: Space::PlaneStress,
     };

@@ -15,5 +15,5 @@ fn reference() -> serde_json::Value {
 }
 
 fn material<const D: usize>(space: Space) -> CellMaterial<D> {
-    CellMaterial { elastic: Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 }, modulus: None, space }
+    CellMaterial { solid: Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 }.into(), modulus: None, space }
 }

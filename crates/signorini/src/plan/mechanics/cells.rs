@@ -6,13 +6,13 @@ use crate::plan::planner::Planner;
 use crate::plan::rigid;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{
-    CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Contact, Geometry, IslandsKey, List, Material,
+    CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Contact, Geometry, IslandsKey, List,
     Shape as Stated, Space as In, Value,
 };
 use signorini_cells::description::{
     Built, Cells, Description, Geometry as Made, Part, Refinement, Scalar, Shape, build,
 };
-use signorini_cells::{CellsError, Elastic, End, Integration, Islands, Products, Space};
+use signorini_cells::{CellsError, Elastic, End, Integration, Islands, Products, SolidMaterial, Space};
 use signorini_geometry::rigid_shape::{ClosestPoints, Normals};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use signorini_solid::stiffness::NEARLY_INCOMPRESSIBLE;
@@ -47,11 +47,16 @@ impl Planner<'_> {
             Some([min, max]) => Aabb::new(Point::<3>::from(min), Point::<3>::from(max)),
             None => Aabb::new(Point::<3>::repeat(-1.0), Point::<3>::repeat(1.0)),
         };
-        let (elastic, modulus) = self.elastic_of_cells(key, &around)?;
-        if let (Some(_), Material::LinearElastic(stated)) = (&modulus, &key.material) {
-            let of_image =
-                matches!(&key.geometry, Geometry::Composed(Composed::Image(i)) if i.youngs_modulus.is_some());
-            let at = &stated.youngs_modulus;
+        let (material, modulus) = self.material_of_cells(key, &around)?;
+        let elastic = *material.elastic();
+        let of_image = matches!(&key.geometry, Geometry::Composed(Composed::Image(i)) if i.youngs_modulus.is_some());
+        let constants = Self::hooke_constants(&key.material);
+        if of_image && constants.is_none() {
+            return Err(problem
+                .error(&key.material, "the image states Young's modulus, which this material does not have alone")
+                .help("material.linear_elastic, or with strain = \"finite\" material.neo_hooke"));
+        }
+        if let (Some(_), Some([at, _])) = (&modulus, constants) {
             if of_image {
                 return Err(problem.error(at, "the image states the modulus too").help("give a constant value"));
             }
@@ -79,11 +84,14 @@ impl Planner<'_> {
             Some(n) if (1..=8).contains(n) => *n as usize,
             Some(n) => return Err(problem.error(n, format!("degree {n} is not between 1 and 8"))),
         };
-        if degree == 1 && space != Space::PlaneStress && elastic.poissons_ratio > NEARLY_INCOMPRESSIBLE {
-            let ratio = elastic.poissons_ratio;
+        let ratio = elastic.poissons_ratio;
+        if degree == 1 && space != Space::PlaneStress && ratio > NEARLY_INCOMPRESSIBLE {
             self.warn(format!("`{name}`: cells of degree 1 lock with Poisson's ratio {ratio}: use degree 2 or more"));
         }
-        let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, elastic);
+        if degree == 1 && space != Space::PlaneStress && material.law().has_history() {
+            self.warn(format!("`{name}`: cells of degree 1 lock where they yield: use degree 2 or more"));
+        }
+        let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, material);
         made.bounds = bounds;
         made.modulus = modulus;
         made.memory = memory_at_hand();
@@ -179,31 +187,21 @@ impl Planner<'_> {
         Err(self.problem.error(n, format!("{n} is not between {least} and {most}")))
     }
 
-    /// The constants of the cells; of a Young's modulus that varies the largest one at points of a box, and the factor of it.
-    fn elastic_of_cells(
+    /// What the cells are made of; of a Young's modulus that varies with the largest one at points of a box, and the factor of
+    /// it.
+    fn material_of_cells(
         &self,
         key: &CellsBody,
         around: &Aabb<3>,
-    ) -> Result<(Elastic, Option<(Scalar, f64)>), CaseError> {
-        let Material::LinearElastic(constants) = &key.material else {
-            return Err(self
-                .problem
-                .error(&key.material, "finite cells are linear elastic with small strain")
-                .help("material.linear_elastic = { youngs_modulus = …, poissons_ratio = … }"));
+    ) -> Result<(SolidMaterial, Option<(Scalar, f64)>), CaseError> {
+        let material = self.material(key.strain.as_ref(), &key.material)?;
+        let Some([modulus, ratio]) = Self::hooke_constants(&key.material) else { return Ok((material, None)) };
+        let Some((most, factor)) = self.modulus_of_cells(modulus, around)? else {
+            let constants = self.constants(modulus, ratio)?;
+            return Ok(((constants, material.law().clone()).into(), None));
         };
-        let varying = self.modulus_of_cells(&constants.youngs_modulus, around)?;
-        let youngs_modulus = match &varying {
-            Some((most, _)) => *most,
-            None => self.reader.positive(&constants.youngs_modulus, PRESSURE)?,
-        };
-        let poissons_ratio = self.reader.number(&constants.poissons_ratio, NONE)?;
-        if !(poissons_ratio > -1.0 && poissons_ratio < 0.5) {
-            return Err(self
-                .problem
-                .error(&constants.poissons_ratio, format!("Poisson's ratio is {poissons_ratio}"))
-                .help("above -1 and below 0.5"));
-        }
-        Ok((Elastic { youngs_modulus, poissons_ratio }, varying.map(|(_, factor)| (factor, 1.0))))
+        let constants = Elastic { youngs_modulus: most, poissons_ratio: self.poissons_ratio(ratio)? };
+        Ok(((constants, material.law().clone()).into(), Some((factor, 1.0))))
     }
 
     /// The largest value of a modulus that varies at points of a box, and the modulus over it; none of a constant one.

@@ -128,10 +128,11 @@ impl Planner<'_> {
         };
         // The stress of cells keeps them from what they touch, if nothing else is stated: their pressure then does not ripple.
         // Lines of load have penalties.
-        let by_stress = !matches!(kinds[master.body], Kind::Curve { .. });
+        let is_inelastic = body(&slave).is_inelastic();
+        let by_stress = !matches!(kinds[master.body], Kind::Curve { .. }) && !is_inelastic;
         let is_rigid = body(&slave).is_rigid();
         let (sampling, enforcement, method) =
-            self.system_method(key, (is_rigid, by_stress), (straight, body(&slave).is_linear()), kind)?;
+            self.system_method(key, (is_rigid, by_stress), (straight, body(&slave).is_linear(), is_inelastic), kind)?;
         if sampling == Sampling::GaussPoints {
             test_densely(&mut system.bodies, [&slave, &master]);
         }
@@ -342,7 +343,7 @@ impl Planner<'_> {
         &self,
         key: &problem::Contact,
         (rigid, by_stress): (bool, bool),
-        (straight, knows_stress): (bool, bool),
+        (straight, knows_stress, is_inelastic): (bool, bool, bool),
         kind: &Kind,
     ) -> Result<(Sampling, Kept, &'static str), CaseError> {
         let problem = self.problem;
@@ -360,13 +361,15 @@ impl Planner<'_> {
         let (sampling, word, stated) = match &key.method {
             None => match kind {
                 Kind::Solid => (of_curve, "gauss_point", None),
+                // Of stresses with a history nothing is known on the surface: multipliers at as many points as functions.
+                Kind::Cells if is_inelastic && !rigid => (Sampling::Nodes, "cell_surface", None),
                 Kind::Cells => (of_curve, "cell_surface", None),
                 _ => (of_curve, "curve", None),
             },
             Some(Method::CellSurface(k)) if matches!(kind, Kind::Cells) => {
                 // Multipliers at as many points as there are functions; penalties wherever there is pressure.
-                let at_nodes =
-                    matches!(k.enforcement, Some(Enforcement::Multiplier(_) | Enforcement::AugmentedLagrangian(_)));
+                let at_nodes = is_inelastic && k.enforcement.is_none()
+                    || matches!(k.enforcement, Some(Enforcement::Multiplier(_) | Enforcement::AugmentedLagrangian(_)));
                 let sampling = if at_nodes { Sampling::Nodes } else { Sampling::GaussPoints };
                 (sampling, "cell_surface", k.enforcement.as_ref())
             }
@@ -390,6 +393,10 @@ impl Planner<'_> {
             Sampling::GaussPoints if by_stress && word == "cell_surface" => Kept::Nitsche,
             Sampling::GaussPoints => Kept::Penalty { wanted_penetration: None },
         };
+        if let (Some(nitsche @ Enforcement::Nitsche(_)), true) = (stated, is_inelastic) {
+            let message = "Nitsche's method is for elastic bodies: the stress of others is not known on their surface";
+            return Err(problem.error(nitsche, message).help("enforcement.multiplier = {}"));
+        }
         let kept = self.kept(stated, otherwise, word)?;
         Ok((sampling, kept, word))
     }

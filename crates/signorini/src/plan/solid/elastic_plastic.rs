@@ -2,9 +2,9 @@
 
 use crate::plan::planner::Planner;
 use crate::problem::units::{NONE, PRESSURE};
-use crate::problem::{self, CaseError, Space, Value, YieldStress};
-use signorini_solid::law::{ElasticPlastic, Hardening, HardeningError};
-use signorini_solid::{SolidMaterial, StressLaw};
+use crate::problem::{self, CaseError, Value, YieldStress};
+use signorini_material::law::{ElasticPlastic, Hardening, HardeningError};
+use signorini_material::{SolidMaterial, StressLaw};
 
 impl Planner<'_> {
     pub(super) fn elastic_plastic(
@@ -13,11 +13,6 @@ impl Planner<'_> {
         finite: bool,
     ) -> Result<SolidMaterial, CaseError> {
         let problem = self.problem;
-        if self.space == Space::PlaneStress {
-            return Err(problem
-                .error(key, "plasticity is not available in plane stress")
-                .help("space = \"plane_strain\", \"axisymmetric\" or \"3d\""));
-        }
         let elastic = self.constants(&key.youngs_modulus, &key.poissons_ratio)?;
         let points = match &key.yield_stress {
             YieldStress::Constant(value) => vec![[self.reader.positive(value, PRESSURE)?, 0.0]],

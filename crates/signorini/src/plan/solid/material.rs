@@ -6,15 +6,19 @@ use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, Material, Value};
 use signorini_fem::Mesh;
 use signorini_geometry::{Point, Vector};
-use signorini_solid::law::Volumetric;
-use signorini_solid::{Elastic, SolidMaterial, StressLaw};
+use signorini_material::law::Volumetric;
+use signorini_material::{Elastic, SolidMaterial, StressLaw};
 use std::sync::Arc;
 
 impl Planner<'_> {
     /// What a solid is made of, and how its stress follows from its strain.
-    pub(in crate::plan) fn material(&self, key: &problem::Solid) -> Result<SolidMaterial, CaseError> {
+    pub(in crate::plan) fn material(
+        &self,
+        strain: Option<&String>,
+        stated: &Material,
+    ) -> Result<SolidMaterial, CaseError> {
         let problem = self.problem;
-        let finite = match key.strain.as_ref().map(|strain| (strain, strain.as_str())) {
+        let finite = match strain.map(|strain| (strain, strain.as_str())) {
             None | Some((_, "small")) => false,
             Some((_, "finite")) => true,
             Some((strain, other)) => {
@@ -23,12 +27,12 @@ impl Planner<'_> {
                     .help("valid are small and finite"));
             }
         };
-        if finite && matches!(key.material, Material::LinearElastic(_)) {
-            return Err(problem.error(&key.material, "`linear_elastic` is a material for small strain").help(
+        if finite && matches!(stated, Material::LinearElastic(_)) {
+            return Err(problem.error(stated, "`linear_elastic` is a material for small strain").help(
                 "with strain = \"finite\":  material.neo_hooke = {…}  or  material.saint_venant_kirchhoff = {…}",
             ));
         }
-        let material = match &key.material {
+        let material = match stated {
             Material::LinearElastic(m) => {
                 self.hooke(&m.youngs_modulus, &m.poissons_ratio, &StressLaw::LinearElastic)?
             }
@@ -47,9 +51,19 @@ impl Planner<'_> {
             Material::ElasticPlastic(m) => self.elastic_plastic(m, finite)?,
         };
         if !finite && !material.law().is_small_strain() {
-            return Err(problem.error(&key.material, "this material is for finite strain").help("strain = \"finite\""));
+            return Err(problem.error(stated, "this material is for finite strain").help("strain = \"finite\""));
         }
         Ok(material)
+    }
+
+    /// Young's modulus and Poisson's ratio of a material that has these, and no other constants.
+    pub(in crate::plan) fn hooke_constants(material: &Material) -> Option<[&Value; 2]> {
+        match material {
+            Material::LinearElastic(m) => Some([&m.youngs_modulus, &m.poissons_ratio]),
+            Material::NeoHooke(m) => Some([&m.youngs_modulus, &m.poissons_ratio]),
+            Material::SaintVenantKirchhoff(m) => Some([&m.youngs_modulus, &m.poissons_ratio]),
+            _ => None,
+        }
     }
 
     /// A law with the constants of Hooke's, which may vary in space.
@@ -112,11 +126,15 @@ impl Planner<'_> {
     }
 
     /// Young's modulus and Poisson's ratio that are the same everywhere.
-    pub(super) fn constants(&self, modulus: &Value, ratio: &Value) -> Result<Elastic, CaseError> {
+    pub(in crate::plan) fn constants(&self, modulus: &Value, ratio: &Value) -> Result<Elastic, CaseError> {
         let youngs_modulus = self.reader.positive(modulus, PRESSURE)?;
+        Ok(Elastic { youngs_modulus, poissons_ratio: self.poissons_ratio(ratio)? })
+    }
+
+    pub(in crate::plan) fn poissons_ratio(&self, ratio: &Value) -> Result<f64, CaseError> {
         let poissons_ratio = self.reader.number(ratio, NONE)?;
         if poissons_ratio > -1.0 && poissons_ratio < 0.5 {
-            return Ok(Elastic { youngs_modulus, poissons_ratio });
+            return Ok(poissons_ratio);
         }
         Err(self
             .problem

@@ -3,8 +3,8 @@
 use crate::plan::planner::Planner;
 use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, List, Space, Value};
-use signorini_solid::law::{Orthotropic, OrthotropicError};
-use signorini_solid::{Elastic, SolidMaterial, StressLaw};
+use signorini_material::law::{Orthotropic, OrthotropicError};
+use signorini_material::{Elastic, SolidMaterial, StressLaw};
 
 impl Planner<'_> {
     pub(super) fn orthotropic(&self, key: &problem::Orthotropic, finite: bool) -> Result<SolidMaterial, CaseError> {

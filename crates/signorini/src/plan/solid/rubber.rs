@@ -6,8 +6,10 @@ use crate::problem::units::{NONE, PRESSURE};
 use crate::problem::{self, CaseError, List, Space, Value};
 use nalgebra::Vector3;
 use signorini_geometry::Point;
-use signorini_solid::law::{ArrudaBoyce, Fibre, Isochoric, MOST_TERMS, MooneyRivlin, Ogden, Rubber, Volumetric, Yeoh};
-use signorini_solid::{SolidMaterial, StressLaw};
+use signorini_material::law::{
+    ArrudaBoyce, Fibre, Isochoric, MOST_TERMS, MooneyRivlin, Ogden, Rubber, Volumetric, Yeoh,
+};
+use signorini_material::{SolidMaterial, StressLaw};
 use std::sync::Arc;
 
 /// What all of these laws state.

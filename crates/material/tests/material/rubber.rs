@@ -1,8 +1,8 @@
 //! Laws with the change of volume apart: derivatives, indifference, closed forms of stretches.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use signorini_solid::Elastic;
-use signorini_solid::law::*;
+use signorini_material::Elastic;
+use signorini_material::law::*;
 
 fn rubber(isochoric: Isochoric, fibre: Option<Fibre>, volumetric: Volumetric) -> (Elastic, StressLaw) {
     let law = Rubber { isochoric, fibre, bulk_modulus: 7.0, volumetric };

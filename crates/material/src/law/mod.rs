@@ -45,7 +45,7 @@ pub use tensor::{Response, Tensor, Tensor4};
 pub use volumetric::Volumetric;
 pub use yeoh::Yeoh;
 
-use crate::material::{Elastic, Space};
+use crate::elastic::{Elastic, Space};
 use nalgebra::{Matrix3, Vector3};
 use tensor::{flat, fourth};
 
@@ -127,11 +127,13 @@ impl StressLaw {
     }
 
     /// A point of a law with history after an increment; none of elastic laws.
-    pub fn plastic(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> Option<Plastic> {
-        match self {
-            StressLaw::ElasticPlastic(law) => Some(law.point(elastic.lame(Space::Solid).1, f, history)),
-            _ => None,
+    pub fn plastic(&self, elastic: &Elastic, space: Space, f: &Matrix3<f64>, history: &[f64]) -> Option<Plastic> {
+        let StressLaw::ElasticPlastic(law) = self else { return None };
+        let mut f = *f;
+        if space == Space::PlaneStress {
+            f[(2, 2)] = self.stretch_across(elastic, &f, history);
         }
+        Some(law.point(elastic.lame(Space::Solid).1, &f, history))
     }
 
     /// The direction of fibres, where there are any.
@@ -147,7 +149,7 @@ impl StressLaw {
         let StressLaw::Rubber(law) = self else { return None };
         let mut f = *f;
         if space == Space::PlaneStress {
-            f[(2, 2)] = self.stretch_across(elastic, &f);
+            f[(2, 2)] = self.stretch_across(elastic, &f, &[]);
         }
         law.unstable(&f)
     }
@@ -253,12 +255,51 @@ impl StressLaw {
         })
     }
 
+    /// The same in a space: in plane stress by [`plane_stress`](StressLaw::plane_stress).
+    ///
+    /// # Errors
+    /// Deformations that the law does not cover.
+    pub fn response_in(
+        &self,
+        elastic: &Elastic,
+        space: Space,
+        f: &Matrix3<f64>,
+        history: &[f64],
+    ) -> Result<Response, StrainError> {
+        if space == Space::PlaneStress {
+            self.plane_stress(elastic, f, history)
+        } else {
+            self.response_from(elastic, f, history)
+        }
+    }
+
+    /// Cauchy stress from a first Piola stress.
+    pub fn cauchy(
+        &self,
+        elastic: &Elastic,
+        space: Space,
+        f: &Matrix3<f64>,
+        piola: &Tensor,
+        history: &[f64],
+    ) -> Matrix3<f64> {
+        let piola = Matrix3::from_fn(|i, j| piola[3 * i + j]);
+        if self.is_small_strain() {
+            return piola;
+        }
+        let mut whole = *f;
+        // The thickness changes as well, with no stress across.
+        if space == Space::PlaneStress {
+            whole[(2, 2)] = self.stretch_across(elastic, f, history);
+        }
+        piola * f.transpose() / whole.determinant()
+    }
+
     /// The same in plane stress: the stretch across the plane leaves no stress there, and is condensed out of the tangent.
     /// `f` is that of the plane, its last row and column are not read.
     ///
     /// # Errors
     /// Deformations that the law does not cover.
-    pub fn plane_stress(&self, elastic: &Elastic, f: &Matrix3<f64>) -> Result<Response, StrainError> {
+    pub fn plane_stress(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> Result<Response, StrainError> {
         let mut f = *f;
         for k in 0..2 {
             (f[(k, 2)], f[(2, k)]) = (0.0, 0.0);
@@ -267,15 +308,15 @@ impl StressLaw {
         if !self.is_small_strain() && (jacobian.is_nan() || jacobian <= 0.0) {
             return Err(StrainError::Inverted { jacobian });
         }
-        f[(2, 2)] = self.stretch_across(elastic, &f);
-        let mut out = self.response(elastic, &f)?;
+        f[(2, 2)] = self.stretch_across(elastic, &f, history);
+        let mut out = self.response_from(elastic, &f, history)?;
         let across = out.tangent[(8, 8)];
         out.tangent -= out.tangent.column(8) * out.tangent.row(8) / across;
         Ok(out)
     }
 
-    /// The stretch across the plane that leaves no stress there.
-    pub fn stretch_across(&self, elastic: &Elastic, f: &Matrix3<f64>) -> f64 {
+    /// The stretch across the plane that leaves no stress there, from a history.
+    pub fn stretch_across(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> f64 {
         let jacobian = f[(0, 0)] * f[(1, 1)] - f[(0, 1)] * f[(1, 0)];
         let (lambda, mu) = elastic.lame(Space::Solid);
         let ratio = lambda / (lambda + 2.0 * mu);
@@ -309,18 +350,45 @@ impl StressLaw {
                 let at = law.energy(&f);
                 1.0 - at.stress[8] / at.tangent[(8, 8)]
             }
-            _ => self.free_stretch(elastic, f, -ratio * jacobian.ln()),
+            StressLaw::ElasticPlastic(law) if !law.is_finite => self.free_strain(elastic, f, history),
+            _ => self.free_stretch(elastic, f, history, -ratio * jacobian.ln()),
         }
     }
 
+    /// One plus the strain across the plane without stress there, at small strain. The stress across rises with the strain
+    /// across, the derivative of a convex energy: Newton's method, in an interval that shrinks around the root.
+    fn free_strain(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64]) -> f64 {
+        let mut f = *f;
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut x = 1.0;
+        for _ in 0..MOST_ITERATIONS {
+            f[(2, 2)] = x;
+            let Ok(at) = self.response_from(elastic, &f, history) else { return f64::NAN };
+            let value = at.stress[8];
+            if value > 0.0 {
+                high = x
+            } else {
+                low = x
+            }
+            let step = value / at.tangent[(8, 8)];
+            let next = x - step;
+            // Outside of the interval the middle of it is taken.
+            x = if next >= low && next <= high { next } else { 0.5 * (low + high) };
+            if step.abs() <= 1e-15 {
+                break;
+            }
+        }
+        x
+    }
+
     /// The stretch across the plane without stress there, by Newton's method for its logarithm from a start.
-    fn free_stretch(&self, elastic: &Elastic, f: &Matrix3<f64>, start: f64) -> f64 {
+    fn free_stretch(&self, elastic: &Elastic, f: &Matrix3<f64>, history: &[f64], start: f64) -> f64 {
         let mut f = *f;
         let mut y = start;
         for _ in 0..MOST_ITERATIONS {
             let stretch = y.exp();
             f[(2, 2)] = stretch;
-            let Ok(at) = self.response(elastic, &f) else { return f64::NAN };
+            let Ok(at) = self.response_from(elastic, &f, history) else { return f64::NAN };
             // Kirchhoff stress across, and its change with y.
             let (value, slope) = (stretch * at.stress[8], stretch * (at.stress[8] + stretch * at.tangent[(8, 8)]));
             let step = (value / slope).clamp(-MOST_STEP, MOST_STEP);

@@ -8,7 +8,7 @@ use super::ogden::Ogden;
 use super::tensor::{Response, delta};
 use super::volumetric::Volumetric;
 use super::yeoh::Yeoh;
-use crate::material::Elastic;
+use crate::elastic::Elastic;
 use nalgebra::{Matrix2, Matrix3};
 
 /// The energy of changes of shape.

@@ -1,7 +1,7 @@
 //! What a solid is made of.
 
+use crate::elastic::Elastic;
 use crate::law::StressLaw;
-use crate::material::Elastic;
 use signorini_geometry::Point;
 use std::sync::Arc;
 
@@ -19,6 +19,13 @@ pub struct SolidMaterial {
 impl From<(Elastic, StressLaw)> for SolidMaterial {
     fn from((elastic, law): (Elastic, StressLaw)) -> Self {
         SolidMaterial { elastic, law, by_position: None }
+    }
+}
+
+/// Linear elastic.
+impl From<Elastic> for SolidMaterial {
+    fn from(elastic: Elastic) -> Self {
+        (elastic, StressLaw::LinearElastic).into()
     }
 }
 

@@ -1,8 +1,8 @@
 //! Plasticity at a point: cycles, differences, indifference, energies.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use signorini_solid::law::*;
-use signorini_solid::{Elastic, StressLaw};
+use signorini_material::law::*;
+use signorini_material::{Elastic, Space, StressLaw};
 
 const ELASTIC: Elastic = Elastic { youngs_modulus: 1000.0, poissons_ratio: 0.3 };
 
@@ -30,7 +30,7 @@ fn bar(law: &StressLaw, stretch: f64, history: &mut Vec<f64>) -> (f64, f64, f64)
     }
     let f = Matrix3::from_diagonal(&[stretch, lateral, lateral].into());
     let stress = law.response_from(&ELASTIC, &f, history).unwrap().stress[0];
-    let found = law.plastic(&ELASTIC, &f, history).unwrap();
+    let found = law.plastic(&ELASTIC, Space::Solid, &f, history).unwrap();
     *history = found.history;
     (stress, lateral, found.dissipated)
 }
@@ -123,7 +123,7 @@ fn the_tangent_is_that_of_the_algorithm() {
         (law(table, 5.0, 0.0, true), 0.4),
     ] {
         let first = Matrix3::identity() + before * (0.5 * size);
-        let history = law.plastic(&ELASTIC, &first, &law.start()).unwrap().history;
+        let history = law.plastic(&ELASTIC, Space::Solid, &first, &law.start()).unwrap().history;
         let there = Matrix3::identity() + some * size;
         let at = |f: &Matrix3<f64>| law.response_from(&ELASTIC, f, &history).unwrap();
         let here = at(&there);
@@ -141,7 +141,7 @@ fn the_tangent_is_that_of_the_algorithm() {
             assert!(error < 1e-8, "{} {size}: {error:e}", law.name());
         }
         assert!((here.tangent - here.tangent.transpose()).norm() < 1e-12 * here.tangent.norm());
-        let plastic = law.plastic(&ELASTIC, &there, &history).unwrap().history[0] > history[0];
+        let plastic = law.plastic(&ELASTIC, Space::Solid, &there, &history).unwrap().history[0] > history[0];
         assert_eq!(plastic, size > 1e-3, "{} {size}", law.name());
     }
 }
@@ -162,8 +162,8 @@ fn finite_plasticity_is_indifferent_to_the_frame() {
         let here = law.response_from(&ELASTIC, f, &history).unwrap();
         let there = law.response_from(&ELASTIC, &(r * f), &turned).unwrap();
         assert!((matrix(&there.stress) - r * matrix(&here.stress)).norm() < 1e-11);
-        history = law.plastic(&ELASTIC, f, &history).unwrap().history;
-        turned = law.plastic(&ELASTIC, &(r * f), &turned).unwrap().history;
+        history = law.plastic(&ELASTIC, Space::Solid, f, &history).unwrap().history;
+        turned = law.plastic(&ELASTIC, Space::Solid, &(r * f), &turned).unwrap().history;
         assert!(history.iter().zip(&turned).all(|(a, b)| (a - b).abs() < 1e-12));
     }
     let perfect = self::law(&[[2.0, 0.0]], 0.0, 0.0, true);
@@ -174,9 +174,76 @@ fn finite_plasticity_is_indifferent_to_the_frame() {
         f[(0, 1)] = 3.0 * k as f64 / steps as f64;
         let at = perfect.response_from(&ELASTIC, &f, &history).unwrap();
         shear = (matrix(&at.stress) * f.transpose())[(0, 1)];
-        history = perfect.plastic(&ELASTIC, &f, &history).unwrap().history;
+        history = perfect.plastic(&ELASTIC, Space::Solid, &f, &history).unwrap().history;
     }
     assert!((shear - 2.0 / 3f64.sqrt()).abs() < 2e-3, "{shear}");
     // Its equivalent plastic strain is γ/√3 less the elastic one.
     assert!((history[0] - 3.0 / 3f64.sqrt()).abs() < 3e-3, "{}", history[0]);
+}
+
+/// Paths of plane stress at small strain, and of the logarithms of the stretches and Kirchhoff's stress at finite strain: one
+/// direction, two equal ones, pure shear. In one increment and in three, with the strain across by the volume.
+#[test]
+fn plane_stress_is_exact_along_straight_paths() {
+    let (e, nu, y, h) = (1000.0, 0.3, 2.0, 50.0);
+    let mu = 0.5 * e / (1.0 + nu);
+    let root = 3f64.sqrt();
+    for is_finite in [false, true] {
+        let law = law(&[[y, 0.0]], h, 0.0, is_finite);
+        // Of the equivalent plastic strain: stresses and strains in the plane.
+        let paths: [fn(f64, f64, [f64; 4]) -> ([f64; 2], [f64; 2]); 3] = [
+            |s, a, [e, nu, ..]| ([s, 0.0], [s / e + a, -nu * s / e - 0.5 * a]),
+            |s, a, [e, nu, ..]| ([s, s], [s * (1.0 - nu) / e + 0.5 * a, s * (1.0 - nu) / e + 0.5 * a]),
+            |s, a, [_, _, mu, root]| {
+                let (t, x) = (s / root, s / root / (2.0 * mu) + 0.5 * root * a);
+                ([t, -t], [x, -x])
+            },
+        ];
+        for (path, of) in paths.iter().enumerate() {
+            for increments in [1, 3] {
+                let mut history = law.start();
+                for k in 1..=increments {
+                    let alpha = 0.06 * k as f64 / increments as f64;
+                    let (stress, strain) = of(y + h * alpha, alpha, [e, nu, mu, root]);
+                    let stretch = strain.map(|x| if is_finite { x.exp() } else { 1.0 + x });
+                    let f = Matrix3::from_diagonal(&[stretch[0], stretch[1], 1.0].into());
+                    let at = law.plane_stress(&ELASTIC, &f, &history).unwrap();
+                    let piola = matrix(&at.stress);
+                    for i in 0..2 {
+                        let found = if is_finite { piola[(i, i)] * stretch[i] } else { piola[(i, i)] };
+                        assert!((found - stress[i]).abs() < 1e-10, "{is_finite} path {path}: {found} {}", stress[i]);
+                    }
+                    assert!(piola[(2, 2)].abs() < 1e-10, "{is_finite} path {path}: {} across", piola[(2, 2)]);
+                    history = law.plastic(&ELASTIC, Space::PlaneStress, &f, &history).unwrap().history;
+                    assert!((history[0] - alpha).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+/// The condensed tangent is the derivative of the stress, loading and unloading, with both kinds of hardening.
+#[test]
+fn the_tangent_of_plane_stress_is_that_of_the_algorithm() {
+    for (kinematic, is_finite) in [(0.0, false), (80.0, false), (0.0, true)] {
+        let law = law(&[[2.0, 0.0], [3.0, 0.02]], 20.0, kinematic, is_finite);
+        let f = Matrix3::new(1.012, 0.004, 0.0, 0.002, 0.997, 0.0, 0.0, 0.0, 1.0);
+        let history = law.plastic(&ELASTIC, Space::PlaneStress, &f, &law.start()).unwrap().history;
+        for there in [Matrix3::new(1.02, 0.01, 0.0, 0.005, 0.99, 0.0, 0.0, 0.0, 1.0), f * 0.9995] {
+            let tangent = law.plane_stress(&ELASTIC, &there, &history).unwrap().tangent;
+            let scale = tangent.amax();
+            for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let at = |h: f64| {
+                    let mut moved = there;
+                    moved[(k, l)] += h;
+                    law.plane_stress(&ELASTIC, &moved, &history).unwrap().stress
+                };
+                let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
+                for c in [0, 1, 3, 4] {
+                    let error = (slope[c] - tangent[(c, 3 * k + l)]).abs() / scale;
+                    assert!(error < 1e-8, "{kinematic} {is_finite}: {error:e} of {c} by {k}{l}");
+                }
+            }
+        }
+    }
 }

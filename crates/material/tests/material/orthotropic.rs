@@ -1,8 +1,8 @@
 //! Orthotropic elasticity against compliance, rotations, isotropy and differences.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use signorini_solid::law::*;
-use signorini_solid::{Elastic, StressLaw};
+use signorini_material::law::*;
+use signorini_material::{Elastic, StressLaw};
 
 const E: [f64; 3] = [10.0, 4.0, 2.0];
 const NU: [f64; 3] = [0.3, 0.2, 0.35];
@@ -50,7 +50,7 @@ fn equal_constants_are_isotropic_also_in_plane_stress() {
         let law = StressLaw::Orthotropic(if is_finite { same.at_finite_strain() } else { same });
         for plane in [false, true] {
             let at = |law: &StressLaw| match plane {
-                true => law.plane_stress(&elastic, &f).unwrap(),
+                true => law.plane_stress(&elastic, &f, &[]).unwrap(),
                 false => law.response(&elastic, &f).unwrap(),
             };
             let (a, b) = (at(&law), at(&isotropic));

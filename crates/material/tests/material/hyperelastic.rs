@@ -1,8 +1,8 @@
 //! Stress laws against differences and homogeneous stretches.
 
 use nalgebra::Matrix3;
-use signorini_solid::law::{StrainError, StressLaw, Volumetric};
-use signorini_solid::material::Elastic;
+use signorini_material::Elastic;
+use signorini_material::law::{StrainError, StressLaw, Volumetric};
 
 const LAWS: [StressLaw; 4] = [
     StressLaw::LinearElastic,
@@ -25,7 +25,7 @@ fn stress_and_tangent_are_derivatives_of_the_energy() {
     for law in LAWS {
         for plane in [false, true] {
             let at = |f: &Matrix3<f64>| {
-                if plane { law.plane_stress(&elastic(), f) } else { law.response(&elastic(), f) }.unwrap()
+                if plane { law.plane_stress(&elastic(), f, &[]) } else { law.response(&elastic(), f) }.unwrap()
             };
             let here = at(&some());
             for k in (0..9).filter(|k| !plane || (k % 3 < 2 && k / 3 < 2)) {
@@ -101,7 +101,7 @@ fn homogeneous_stretches_are_the_roots_of_the_lateral_stress() {
             assert!((held.stress[0] - held_stress).abs() < 1e-12 && held.stress[4].abs() < 1e-12, "{}", law.name());
             // In plane stress the bar is free across the plane.
             let plane = Matrix3::from_diagonal(&[stretch, lateral, 0.0].into());
-            let plane = law.plane_stress(&elastic(), &plane).unwrap();
+            let plane = law.plane_stress(&elastic(), &plane, &[]).unwrap();
             assert!((plane.stress - bar.stress).norm() < 1e-12, "{}", law.name());
         }
     }
@@ -115,6 +115,6 @@ fn what_a_law_does_not_cover_is_refused() {
     let turned = Matrix3::from_diagonal(&[-0.5, 1.0, 1.0].into());
     for law in &LAWS[1..] {
         assert!(matches!(law.response(&elastic(), &turned), Err(StrainError::Inverted { .. })));
-        assert!(matches!(law.plane_stress(&elastic(), &turned), Err(StrainError::Inverted { .. })));
+        assert!(matches!(law.plane_stress(&elastic(), &turned, &[]), Err(StrainError::Inverted { .. })));
     }
 }

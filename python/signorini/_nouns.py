@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '2139584b28c2b89c'
+SCHEMA = '5e31c1463763583d'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -34,6 +34,7 @@ CHOICES = {
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
     'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
     'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays', 'nurbs': 'NurbsMesh'},
+    'SupportAxes': {'rectangular': '[[Value]]', 'cylindrical': 'CylindricalAxes'},
 }
 
 class ActiveSetMethod(Noun):
@@ -329,7 +330,7 @@ class Cells(Noun):
 
     geometry: The region filled with material: a shape, a set operation on shapes, or an image.
     mesh: The grid of cells around the body.
-    material: Material of the body: linear elastic.
+    material: The material of the body.
     alpha: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
     degree: Polynomial degree, 1 to 8; 3 if left out.
     functions: Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this
@@ -339,10 +340,11 @@ class Cells(Noun):
         top. If contact names the whole body, it includes the boundary and the sides, except those with a support.
     integration: Quadrature of cut cells; `exact` if left out.
     islands: Treatment of pieces that are not connected to the largest one; `refuse` if left out.
+    strain: Strain measure: `small` or `finite`; `small` if left out.
     """
 
     _key = 'cells'
-    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str')}
+    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str'), 'strain': ('strain', 'str')}
 
     def __init__(
         self,
@@ -356,6 +358,7 @@ class Cells(Noun):
         groups: Optional[Mapping[str, Value]] = None,
         integration: Optional[ExactIntegration | SubCellIntegration | Mapping[str, Any] | str] = None,
         islands: Optional[str] = None,
+        strain: Optional[str] = None,
     ) -> None:
         self.geometry = geometry
         self.mesh = mesh
@@ -366,6 +369,7 @@ class Cells(Noun):
         self.groups = groups
         self.integration = integration
         self.islands = islands
+        self.strain = strain
 
 
 class CellsGrid(Noun):
@@ -629,6 +633,27 @@ class Cylinder(Noun):
         self.axis = axis
 
 
+class CylindricalAxes(Noun):
+    """The line about which axes turn.
+
+    point: A point of the line, lengths.
+    axis: Its direction, which is that of the third component. Left out in the plane, where the line is normal to
+        the plane.
+    """
+
+    _key = 'cylindrical'
+    _types = {'point': ('point', '[Value]'), 'axis': ('axis', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        point: Sequence[Value] | Array,
+        axis: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.point = point
+        self.axis = axis
+
+
 class Difference(Noun):
     """Difference: the first geometry without all others."""
 
@@ -726,7 +751,7 @@ class DividedGmshMesh(Noun):
 
 class ElasticPlastic(Noun):
     """Isotropic, elastic-plastic: von Mises with isotropic and kinematic hardening; with `strain = "finite"` in
-    logarithmic strains. Not in plane stress.
+    logarithmic strains.
 
     youngs_modulus: Young's modulus, a force per area.
     poissons_ratio: Poisson's ratio, above -1 and below 0.5.
@@ -1471,9 +1496,9 @@ class MeshAxis(Noun):
 
 class MeshFile(Noun):
     """A mesh from a file of Gmsh or from a deck of another program. Sets of nodes, sets of elements and surfaces of
-    a deck are groups of the mesh.
+    a deck are groups of the mesh; so are the values of arrays of integers of a .vtu file, as `NAME=VALUE`.
 
-    file: A .msh, .inp or .feb file. The path is relative to the folder of the case.
+    file: A .msh, .inp, .feb or .vtu file. The path is relative to the folder of the case.
     adjust: Nodes of a surface of a deck that are moved onto another of its surfaces, to close gaps of the mesh.
     connected_to: The number of a node of a deck: only the connected part that contains it forms the body.
     group: The set of elements, part or physical group that forms the body; all cells if left out.
@@ -2128,6 +2153,16 @@ class RectangleSection(Noun):
         self.height = height
 
 
+class Rectangular(Noun):
+    """The direction of the first axis, and in space one in the plane of the first two. Lengths have no influence."""
+
+    _key = 'rectangular'
+    _types = {'value': ('rectangular', '[[Value]]')}
+
+    def __init__(self, value: Sequence[Sequence[Value] | Array] | Array) -> None:
+        self.value = value
+
+
 class Refine(Noun):
     """Refinement of a grid in the plane: which cells are divided.
 
@@ -2538,6 +2573,7 @@ class Support(Noun):
     """A support: degrees of freedom that are fixed, prescribed or elastically supported.
 
     on: Body or group of a body: `BODY` or `BODY:GROUP`.
+    axes: The axes of the components of `displacement`, at the reference position; those of space if left out.
     displacement: Prescribed displacement: a value for a membrane, otherwise a vector with `"free"` for free
         components.
     from_: Time from which the support holds: at later times only. From the start if left out.
@@ -2552,12 +2588,13 @@ class Support(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
+    _types = {'on': ('on', 'str'), 'axes': ('axes', '<SupportAxes>'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
 
     def __init__(
         self,
         *,
         on: str,
+        axes: Optional[Rectangular | CylindricalAxes | Sequence[Sequence[Value] | Array] | Array | Mapping[str, Any] | str] = None,
         displacement: Optional[Value | Sequence[Value] | Array] = None,
         from_: Optional[Value] = None,
         normal: Optional[Value] = None,
@@ -2567,6 +2604,7 @@ class Support(Noun):
         until: Optional[Value] = None,
     ) -> None:
         self.on = on
+        self.axes = axes
         self.displacement = displacement
         self.from_ = from_
         self.normal = normal
@@ -2946,4 +2984,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

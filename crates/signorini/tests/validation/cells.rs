@@ -52,7 +52,7 @@ fn each_mistake_of_a_body_of_cells_is_told_at_its_place() {
         ),
         ("hertz_cells", "degree = 2", "alpha = -1\ndegree = 2", "not between 0 and 1", "-1"),
         ("hertz_cells", "degree = 2", "degree = 2\nislands = \"sink\"", "sink", "sink"),
-        ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "linear elastic", "material"),
+        ("hertz_cells", "material.linear_elastic", "material.neo_hooke", "for finite strain", "material"),
         ("foam", "spacing = [\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"], ", "", "the size of its voxels", "foam.npy"),
         ("foam", "\"0.25 mm\", \"0.25 mm\", \"0.25 mm\"", "1, 1", "expected 3", "1, 1"),
         (

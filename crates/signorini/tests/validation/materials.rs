@@ -357,13 +357,6 @@ fn materials_that_are_none_are_told() {
             "Young's modulus is -0.5 at (0.000000, 0.000000)",
         ),
         (
-            "plane_stress",
-            "small",
-            "elastic_plastic = { youngs_modulus = 1, poissons_ratio = 0.3, yield_stress = 1 }",
-            "elastic_plastic",
-            "plane stress",
-        ),
-        (
             "plane_strain",
             "small",
             "elastic_plastic = { youngs_modulus = 1, poissons_ratio = 0.3, yield_stress = [[1, 0], [0.5, 0.1]] }",

@@ -117,11 +117,8 @@ pub(crate) fn read(path: &Path) -> Result<String, ImportError> {
     remarks.push("waves, currents, drag and all other motion; the seabed is rigid".into());
     remarks.dedup();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut head = format!("# Imported from {name}: the lines at rest.\n# Left out or changed:\n");
-    remarks.iter().for_each(|r| {
-        let _ = writeln!(head, "# - {r}");
-    });
-    let _ = write!(head, "\ntitle = {}", quoted(&name));
+    let left_out = crate::case::left_out(&remarks);
+    let head = format!("# Imported from {name}: the lines at rest.\n{left_out}\ntitle = {}", quoted(&name));
     Ok(head + &out + "\n[[steps]]\nto = 1.0\nincrements = 1\n")
 }
 

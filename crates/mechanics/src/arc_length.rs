@@ -1,10 +1,10 @@
 //! Increments along a path of equilibria on which the time is an unknown: it passes the folds at which a path in time ends.
 //!
 //! Unknowns and time are measured by their scales: the time by the duration of the step, displacements and rotations by what they
-//! would change by over the step if they went on as it begins. In each increment the one that changes most along the tangent of the path is prescribed, and all
-//! others, the time among them, are found by Newton's method (local parametrisation: Rheinboldt & Burkardt 1983, A locally
-//! parameterized continuation process, ACM Trans. Math. Software 9). At a fold in time that is an unknown of the bodies, where
-//! the path is steep it is the time.
+//! would change by over the step if they went on as it begins. In each increment the one that changes most along the tangent of
+//! the path is prescribed, and all others, the time among them, are found by Newton's method (local parametrisation: Rheinboldt &
+//! Burkardt 1983, A locally parameterized continuation process, ACM Trans. Math. Software 9). At a fold in time that is an
+//! unknown of the bodies, where the path is steep it is the time.
 //!
 //! With the residual `R(u, t)` and the prescribed component `m` of `z = (u, t)`, a step solves
 //!
@@ -344,8 +344,13 @@ impl<'a> OnPath<'a> {
             let k = unknown as usize;
             held[k] = true;
             right[k] = -h.constraint.violation / factor;
-            let of = |list: &[(usize, f64)]| list.iter().find(|(own, _)| *own == k).map(|(_, lacks)| *lacks);
-            by_time[k] = of(&before.1).zip(of(&after.1)).map_or(0.0, |(a, b)| rate(a, b));
+            by_time[k] = 0.0;
+        }
+        // The same supports hold in the same order, but where one begins or ends just now.
+        for ((k, a), (other, b)) in before.1.iter().zip(&after.1) {
+            if k == other && held[*k] {
+                by_time[*k] = rate(*a, *b);
+            }
         }
         if self.problem.is_free {
             let sizes = self.problem.system.row_sizes(&out, Stiffness::InTangent);

@@ -71,12 +71,7 @@ impl<'a> Writer<'a> {
         let mut out = String::new();
         let name = deck.file.file_name().unwrap_or_default().to_string_lossy();
         let _ = writeln!(out, "# Imported from {name}.");
-        if !self.remarks.is_empty() {
-            let _ = writeln!(out, "# Left out or changed:");
-            self.remarks.iter().for_each(|r| {
-                let _ = writeln!(out, "# - {r}");
-            });
-        }
+        out.push_str(&left_out(&self.remarks));
         let title = deck.title.clone().unwrap_or_else(|| name.to_string());
         let _ = writeln!(out, "\ntitle = {}\nspace = \"{}\"", quoted(title.trim()), deck.space());
         out.push_str(&self.values.tables());
@@ -152,6 +147,15 @@ fn adjustment(of: &Adjustment) -> String {
     let within = of.within.map_or(String::new(), |within| format!(", within = {within:?}"));
     let nodes = of.nodes.as_ref().map_or(String::new(), |set| format!(", nodes = {}", quoted(set)));
     format!("{{ surface = {}, to = {}{within}{nodes} }}", quoted(&of.surface), quoted(&of.to))
+}
+
+/// What is left out or changed, as comments; nothing where nothing is.
+pub(crate) fn left_out(remarks: &[String]) -> String {
+    if remarks.is_empty() {
+        return String::new();
+    }
+    let lines: String = remarks.iter().map(|remark| format!("# - {remark}\n")).collect();
+    format!("# Left out or changed:\n{lines}")
 }
 
 /// A text in quotes.

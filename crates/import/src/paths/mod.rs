@@ -134,12 +134,7 @@ impl Model {
         let mut out = String::new();
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let _ = writeln!(out, "# Imported from {name}, at the pose in which it is written.");
-        if !self.remarks.is_empty() {
-            let _ = writeln!(out, "# Left out or changed:");
-            self.remarks.iter().for_each(|r| {
-                let _ = writeln!(out, "# - {r}");
-            });
-        }
+        out.push_str(&crate::case::left_out(&self.remarks));
         let title = self.title.clone().unwrap_or_else(|| name.to_string());
         let _ = writeln!(out, "\ntitle = {}\nanalysis = \"wrapping\"", crate::case::quoted(title.trim()));
         if let Some(units) = self.units {

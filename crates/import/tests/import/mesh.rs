@@ -10,18 +10,19 @@ use signorini_import::mesh::{Selection, build};
 use signorini_import::read_mesh;
 use std::fmt::Write;
 
+pub(crate) const CUBE: [[f64; 3]; 8] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [0.0, 1.0, 1.0],
+];
+
 /// Vertices of one element, and the edges between which CalculiX has its nodes of order 2, in its order.
 pub(crate) fn element(kind: Kind) -> (&'static [[f64; 3]], &'static [[usize; 2]], &'static str) {
-    const CUBE: [[f64; 3]; 8] = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [1.0, 0.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [0.0, 1.0, 1.0],
-    ];
     const CUBE_EDGES: [[usize; 2]; 12] =
         [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
     const WEDGE: [[f64; 3]; 6] =

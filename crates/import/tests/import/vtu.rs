@@ -1,6 +1,6 @@
 //! Meshes of VTK: the order of nodes, groups, encodings, damaged files.
 
-use crate::mesh::{KINDS, bent, element, volume};
+use crate::mesh::{CUBE, KINDS, bent, element, volume};
 use crate::written;
 use signorini_fem::Mesh;
 use signorini_fem::rules::rule;
@@ -106,17 +106,6 @@ fn nodes_of_all_cells_are_in_their_places() {
         }
     }
 }
-
-const CUBE: [[f64; 3]; 8] = [
-    [0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [1.0, 0.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [0.0, 1.0, 1.0],
-];
 
 /// A cube with three labelled faces, one of them shared by two of another kind.
 fn labelled() -> String {

@@ -105,14 +105,7 @@ impl MechanicsModel {
             let mut seen = Vec::new();
             let mut is_given_up = false;
             let mut report = |iteration: usize, residual: f64| {
-                progress.iteration(&Iteration {
-                    step: index,
-                    time: target,
-                    iteration,
-                    residual,
-                    action: "newton",
-                    figures: &[("residual", residual)],
-                });
+                tell_iteration(progress, index, target, (iteration, residual));
                 seen.push(residual);
                 is_given_up = residuals.len() + seen.len() >= most;
                 !is_given_up && !progress.interrupted()
@@ -249,6 +242,12 @@ impl MechanicsModel {
         };
         Failure { reason, text, residuals }
     }
+}
+
+/// Tells of an iteration of Newton's method.
+fn tell_iteration(progress: &mut dyn Progress, step: usize, time: f64, (iteration, residual): (usize, f64)) {
+    let figures = &[("residual", residual)];
+    progress.iteration(&Iteration { step, time, iteration, residual, action: "newton", figures });
 }
 
 /// Whether solids are at rest at t = 0, with nothing but rigid bodies about them.

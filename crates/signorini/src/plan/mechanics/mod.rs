@@ -114,6 +114,13 @@ pub struct MechanicsPlan {
     pub notes: Vec<String>,
 }
 
+impl MechanicsPlan {
+    /// Whether a step follows a path of equilibria.
+    pub fn follows_a_path(&self) -> bool {
+        self.arc_lengths.iter().any(Option::is_some)
+    }
+}
+
 /// Whether a problem is one of bodies in space or in a plane: all but membranes.
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();

@@ -112,8 +112,7 @@ pub fn estimate(
     let affordable = share * AFFORDABLE;
     let work = (unknowns * plan.times.len()) as f64;
     // Finer functions come to other states along a path.
-    let on_path = plan.arc_lengths.iter().any(Option::is_some);
-    if plan.system.contacts.is_empty() || on_path || work > affordable {
+    if plan.system.contacts.is_empty() || plan.follows_a_path() || work > affordable {
         return;
     }
     let most = (affordable / work).powf(if in_space { 1.0 / 3.0 } else { 0.5 });

@@ -1,12 +1,12 @@
 //! Increments of a system along a path of equilibria, by its arc length.
 
-use super::{Failure, MechanicsModel, recovered};
+use super::{Failure, MechanicsModel, recovered, tell_iteration};
 use crate::plan::history::ArcLengthIncrement;
 use crate::problem::CaseError;
 use crate::report::Reason;
 use serde::{Deserialize, Serialize};
 use signorini_mechanics::{IncrementError, IncrementResult, Path, PathIncrement};
-use signorini_solve::{Iteration, Progress};
+use signorini_solve::Progress;
 
 /// Halvings of an increment before the path is given up.
 const MOST_HALVINGS: usize = 10;
@@ -53,14 +53,7 @@ impl MechanicsModel {
             let increment = PathIncrement { path: Path { direction, scales }, length, range: planned.range };
             let time = self.state.time;
             let mut report = |iteration: usize, residual: f64| {
-                progress.iteration(&Iteration {
-                    step: index,
-                    time,
-                    iteration,
-                    residual,
-                    action: "newton",
-                    figures: &[("residual", residual)],
-                });
+                tell_iteration(progress, index, time, (iteration, residual));
                 residuals.push(residual);
                 !progress.interrupted()
             };

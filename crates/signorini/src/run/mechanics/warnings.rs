@@ -76,8 +76,7 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
     let time = shown.time;
     warn_of_closing(plan, [before, result], time, record);
     if let Some(told) = &result.stability {
-        let on_path = plan.arc_lengths.iter().any(Option::is_some);
-        warn_of_stability(&stability_report(&plan.system, told), (time, on_path), record);
+        warn_of_stability(&stability_report(&plan.system, told), (time, plan.follows_a_path()), record);
     }
     for ((contact, tested), sites) in plan.system.contacts.iter().zip(&plan.contacts).zip(&result.sites) {
         let by_mortar = tested.method == "mortar";

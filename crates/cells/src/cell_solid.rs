@@ -41,8 +41,8 @@ use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Direction,
-    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack, SlavePoint,
-    Subspaces,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack,
+    SlavePoint, Subspaces,
 };
 use signorini_solve::blocks::Block;
 use std::collections::BTreeMap;
@@ -396,6 +396,8 @@ impl<const D: usize> Body for CellSolid<D> {
 }
 
 impl<const D: usize> Kinematics for CellSolid<D> {}
+
+impl<const D: usize> Inertial for CellSolid<D> {}
 
 impl<const D: usize> Elimination for CellSolid<D> {
     fn is_linear(&self) -> bool {

@@ -7,8 +7,8 @@ use signorini_geometry::rigid_shape::Plane;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, Contact, ContactSides,
-    Contribution, Elimination, Enforcement, Function, Hold, Kinematics, Load, Master, Motion, Order, Part, PlaceError,
-    PlacedLoad, RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
+    Contribution, Elimination, Enforcement, Function, Hold, Inertial, Kinematics, Load, Master, Motion, Order, Part,
+    PlaceError, PlacedLoad, RigidBody, Sampling, Site, Slack, SlavePoint, System, TimedLoad,
 };
 use std::sync::Arc;
 
@@ -117,6 +117,8 @@ impl Body for SprungPoint {
 }
 
 impl Kinematics for SprungPoint {}
+
+impl Inertial for SprungPoint {}
 
 impl Elimination for SprungPoint {}
 

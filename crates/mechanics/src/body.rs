@@ -11,6 +11,7 @@ pub use crate::points::{
 
 use crate::axes::Axes;
 use crate::curve::Curve;
+pub use crate::dynamics::Inertial;
 use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
 use signorini_geometry::{Point, Vector};
@@ -171,7 +172,9 @@ pub struct BodyFields {
 
 /// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
 /// a body without it implements these as they are.
-pub trait Body: Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Send + Sync {
+pub trait Body:
+    Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Inertial + Send + Sync
+{
     fn name(&self) -> &str;
 
     /// Number of unknowns.

@@ -9,6 +9,7 @@
 //! - `density`: how densely a body is tested against faces.
 //! - [`contact_law`]: law and enforcement at a point; [`contact`]: the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
+//! - [`dynamics`]: motion with inertia.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
@@ -29,6 +30,7 @@ pub mod contact;
 pub mod contact_law;
 pub mod curve;
 mod density;
+pub mod dynamics;
 mod eliminated;
 pub mod enforcement;
 mod equilibrium;
@@ -74,6 +76,7 @@ pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;
 pub use curve::Curve;
 pub use density::test_densely;
+pub use dynamics::{Dynamics, Inertial, Mass, SpinInertia};
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;

@@ -8,6 +8,7 @@ use crate::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Hold, Kinematics, Load, PlaceError, Slack,
 };
+use crate::dynamics::Inertial;
 use crate::pair::{any_tangent, axis};
 use crate::points::{
     Anchor, Function, Master, MasterProjection, MaterialPoint, Order, RigidFoot, Sampling, SecondDerivative, Site,
@@ -349,6 +350,8 @@ impl Kinematics for RigidBody {
         }
     }
 }
+
+impl Inertial for RigidBody {}
 
 impl Elimination for RigidBody {}
 

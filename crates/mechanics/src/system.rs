@@ -6,6 +6,7 @@
 
 use crate::axes::Axes;
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
+use crate::dynamics::{Dynamics, Mass};
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_bodies::LinearBodies;
 use crate::linear_solver::{LinearSolver, Stiffness};
@@ -136,6 +137,10 @@ pub struct System {
     pub unstable: Unstable,
     /// What is known of linear bodies, from the first step on.
     pub linear: LinearBodies,
+    /// How bodies move from the next increment on; none where they are in equilibrium.
+    pub dynamics: Option<Dynamics>,
+    /// What each body weighs; nothing before dynamics are asked for.
+    pub masses: Vec<Option<Mass>>,
 }
 
 /// A state of the system.
@@ -152,6 +157,10 @@ pub struct SystemState {
     pub(crate) predictions: Vec<Vec<f64>>,
     /// Steps of the unknowns of the bodies since the last state that was accepted.
     pub(crate) travel: Vec<f64>,
+    /// Velocities of the unknowns of the bodies, angular velocities of spins; none before they move with inertia.
+    pub velocities: Vec<f64>,
+    /// Their accelerations.
+    pub accelerations: Vec<f64>,
 }
 
 /// Why a system cannot be assembled.
@@ -239,6 +248,7 @@ impl System {
             reactions: Vec::new(),
             predictions: self.contacts.iter().map(|c| c.prediction()).collect(),
             travel: vec![0.0; count],
+            ..SystemState::default()
         }
     }
 
@@ -382,7 +392,16 @@ impl System {
         let predictions = (self.contacts.iter().zip(self.own(at)))
             .map(|(contact, own)| contact.predict(now, own, step, share))
             .collect();
-        SystemState { time: at.time, bodies, multipliers, reactions, predictions, travel }
+        SystemState {
+            time: at.time,
+            bodies,
+            multipliers,
+            reactions,
+            predictions,
+            travel,
+            velocities: at.velocities.clone(),
+            accelerations: at.accelerations.clone(),
+        }
     }
 
     /// The residual at a state and a time, without the reactions of supports, and its derivative.

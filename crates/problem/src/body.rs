@@ -51,6 +51,10 @@ pub struct Solid {
     pub material: Material,
     /// Strain measure: `small` or `finite`; `small` if left out.
     pub strain: Option<String>,
+    /// Mass per volume; no mass if left out.
+    pub density: Option<Value>,
+    /// Velocity along each axis at the start, as expressions of position; at rest if left out.
+    pub velocity: Option<List<Value>>,
     /// Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
     #[serde(default)]
     pub edges: Named<SolidEdge>,

@@ -33,6 +33,10 @@ pub struct CellsBody {
     pub material: Material,
     /// Strain measure: `small` or `finite`; `small` if left out.
     pub strain: Option<String>,
+    /// Mass per volume; no mass if left out.
+    pub density: Option<Value>,
+    /// Velocity along each axis at the start, as expressions of position; at rest if left out.
+    pub velocity: Option<List<Value>>,
     /// Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z > 0.9`. The
     /// recovered boundary is `boundary`; the sides of the grid are left, right, front, back, bottom and top. If contact
     /// names the whole body, it includes the boundary and the sides, except those with a support.

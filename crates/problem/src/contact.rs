@@ -32,6 +32,8 @@ pub struct Contact {
     pub compliance: Option<Compliance>,
     /// Friction law; frictionless if left out.
     pub friction: Option<Friction>,
+    /// Coefficient of restitution of rigid bodies that strike, from 0 to 1; 0 if left out.
+    pub restitution: Option<f64>,
     /// Wear of solids by Archard's law: the depth that is worn off per pressure and slip, one over a pressure.
     pub wear: Option<Value>,
 }

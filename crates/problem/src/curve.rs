@@ -32,6 +32,10 @@ pub struct Rope {
     pub pulleys: Option<List<List<Value>>>,
     /// A winch at a supported end. Only for straight elements.
     pub winch: Option<Winch>,
+    /// Mass per length; no mass if left out.
+    pub mass_per_length: Option<Value>,
+    /// Velocity along each axis at the start, as expressions of position; at rest if left out.
+    pub velocity: Option<List<Value>>,
 }
 
 /// A winch, which pays out rope and takes it in.
@@ -80,6 +84,10 @@ pub struct Beam {
     pub radius: Option<Value>,
     /// Number of Gauss points in each element at which contact is tested; 4 if left out.
     pub contact_points: Option<i64>,
+    /// Mass per volume, of a section with a shape; no mass if left out.
+    pub density: Option<Value>,
+    /// Velocity along each axis at the start, as expressions of position; at rest if left out.
+    pub velocity: Option<List<Value>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]

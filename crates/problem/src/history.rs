@@ -14,8 +14,33 @@ pub struct Step {
     pub increments: Option<i64>,
     /// The path parameter of the step; the time if left out.
     pub control: Option<Control>,
+    /// Motion with inertia; equilibrium at each time if left out.
+    pub dynamics: Option<Dynamics>,
     /// Time tolerance to which changes of topology and jumps are located; not located if left out.
     pub events: Option<f64>,
+}
+
+/// Motion with inertia from the state at the end of the step before, or from the start.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Dynamics {
+    /// Spectral radius at high frequencies of the generalised-α method, from 0 to 1; 1 if left out: nothing is damped.
+    pub spectral_radius: Option<f64>,
+    /// Damping by mass and stiffness; none if left out.
+    pub damping: Option<RayleighDamping>,
+    /// Error of the displacements of an increment relative to the size of the bodies, by which increments are cut; they are as
+    /// stated if left out.
+    pub tolerance: Option<f64>,
+}
+
+/// Damping forces in proportion to the momentum of each point, and to the rate of the internal forces.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RayleighDamping {
+    /// Damping force per momentum, one over a time; 0 if left out.
+    pub mass: Option<Value>,
+    /// Damping force per rate of the elastic force, a time; 0 if left out.
+    pub stiffness: Option<Value>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]

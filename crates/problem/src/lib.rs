@@ -37,7 +37,7 @@ pub use contact::*;
 pub use curve::*;
 pub use error::CaseError;
 pub use fit::{Fit, FitUnknown, Noise};
-pub use history::{ArcLength, AreaControl, Control, Step};
+pub use history::{ArcLength, AreaControl, Control, Dynamics, RayleighDamping, Step};
 pub use key_path::{KeyPath, Part};
 pub use list::{List, Named};
 pub use material::*;
@@ -86,6 +86,9 @@ pub struct Problem {
     /// Contacts between bodies, by names of your own.
     #[serde(default)]
     pub contacts: Named<Contact>,
+    /// Acceleration of gravity along each axis, which acts on every body with a mass, also at rest; expressions of t are possible.
+    /// None if left out.
+    pub gravity: Option<List<Value>>,
     /// Load steps. Without steps one state is computed at t = 0.
     #[serde(default)]
     pub steps: List<Step>,
@@ -131,6 +134,7 @@ impl Problem {
             supports: Named::default(),
             loads: Named::default(),
             contacts: Named::default(),
+            gravity: None,
             steps: List::default(),
             stability: None,
             output: Output::default(),

@@ -1,7 +1,7 @@
 //! Rigid bodies: their shape, on which side they are touched, and how they move.
 
 use super::shape::Shape;
-use super::{List, Nothing, Value};
+use super::{Components, List, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -57,8 +57,19 @@ pub enum Motion {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeMotion {
-    /// Reference point for forces and rotations, lengths; the centre of the shape if left out.
+    /// Reference point for forces and rotations, lengths; the centre of the shape if left out. With a mass it is the centre of mass.
     pub center: Option<List<Value>>,
+    /// Mass per volume, from which mass, centre of mass and inertia of a closed shape follow; no mass if left out.
+    pub density: Option<Value>,
+    /// Mass, in place of the density.
+    pub mass: Option<Value>,
+    /// Moments of inertia about the centre: one value of a ball or in the plane, or `[Jxx, Jyy, Jzz]` about the axes. That of the shape
+    /// with this mass if left out.
+    pub inertia: Option<Components>,
+    /// Velocity of the centre along each axis at the start; at rest if left out.
+    pub velocity: Option<List<Value>>,
+    /// Angular velocity in radians per time at the start, along each axis or one value in the plane; none if left out.
+    pub angular_velocity: Option<Components>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

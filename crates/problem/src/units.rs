@@ -13,6 +13,13 @@ pub const FORCE: Dimension = [0, 1, 0];
 pub const AREA: Dimension = [2, 0, 0];
 pub const ENERGY: Dimension = [1, 1, 0];
 pub const TIME: Dimension = [0, 0, 1];
+pub const FREQUENCY: Dimension = [0, 0, -1];
+pub const VELOCITY: Dimension = [1, 0, -1];
+pub const ACCELERATION: Dimension = [1, 0, -2];
+pub const MASS: Dimension = [-1, 1, 2];
+pub const MASS_PER_LENGTH: Dimension = [-2, 1, 2];
+pub const DENSITY: Dimension = [-4, 1, 2];
+pub const INERTIA: Dimension = [1, 1, 2];
 
 /// The base units of a case, in metres, newtons and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +40,8 @@ const PRESSURES: [(&str, f64); 8] =
     [("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2)];
 const ENERGIES: [(&str, f64); 4] = [("J", 1.0), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
 
+const MASSES: [(&str, f64); 4] = [("kg", 1.0), ("g", 1e-3), ("mg", 1e-6), ("t", 1e3)];
+
 /// A name with the letter u for micro, which has two code points in Unicode: the micro sign and the Greek letter mu.
 fn plain(name: &str) -> String {
     name.replace(['\u{b5}', '\u{3bc}'], "u")
@@ -51,6 +60,7 @@ fn named() -> BTreeMap<&'static str, (f64, Dimension)> {
         .chain(of(&TIMES, TIME))
         .chain(of(&PRESSURES, PRESSURE))
         .chain(of(&ENERGIES, ENERGY))
+        .chain(of(&MASSES, MASS))
         .chain([("1", (1.0, NONE))])
         .collect()
 }

@@ -39,6 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         degree: Some(2),
         material: Material::LinearElastic(steel),
         strain: None,
+        density: None,
+        velocity: None,
         edges: Named::default(),
     };
     problem.bodies.insert("block".into(), Body::Solid(block));

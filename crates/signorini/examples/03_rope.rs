@@ -35,6 +35,8 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         contact_points: None,
         pulleys: None,
         winch: None,
+        mass_per_length: None,
+        velocity: None,
     };
     problem.bodies.insert("rope".into(), Body::Rope(rope));
     let drum = Cylinder { point: [0.0, 0.0, 0.0].into(), axis: Some([0.0, 1.0, 0.0].into()), radius: 1.0.into() };

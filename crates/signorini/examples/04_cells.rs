@@ -35,6 +35,8 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         islands: None,
         material: Material::LinearElastic(LinearElastic { youngs_modulus: YOUNG.into(), poissons_ratio: 0.3.into() }),
         strain: None,
+        density: None,
+        velocity: None,
         groups: Named::default(),
     };
     problem.bodies.insert("column".into(), Body::Cells(Box::new(body)));

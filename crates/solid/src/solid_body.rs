@@ -35,7 +35,8 @@ use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Curve, Direction,
-    Elimination, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint, Surface,
+    Elimination, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Surface,
 };
 use spatial::spatial;
 use std::collections::{BTreeMap, HashMap};
@@ -390,6 +391,8 @@ impl<const D: usize> Body for SolidBody<D> {
 }
 
 impl<const D: usize> Kinematics for SolidBody<D> {}
+
+impl<const D: usize> Inertial for SolidBody<D> {}
 
 impl<const D: usize> Elimination for SolidBody<D> {
     fn cliques(&self) -> Vec<Vec<u32>> {

@@ -168,6 +168,8 @@ impl Body for Sheet {
 
 impl Kinematics for Sheet {}
 
+impl Inertial for Sheet {}
+
 impl Elimination for Sheet {}
 
 impl ContactSides for Sheet {}

@@ -15,7 +15,8 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack,
+    SlavePoint,
 };
 
 /// Numbers of a node in a configuration, and unknowns.
@@ -400,6 +401,8 @@ impl Kinematics for Beam {
         place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
     }
 }
+
+impl Inertial for Beam {}
 
 impl Elimination for Beam {}
 

@@ -16,7 +16,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Elimination, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A cable that cannot be.
@@ -286,6 +286,8 @@ impl Kinematics for Cable {
         place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
     }
 }
+
+impl Inertial for Cable {}
 
 impl Elimination for Cable {}
 

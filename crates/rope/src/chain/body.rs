@@ -18,7 +18,8 @@ use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack,
+    SlavePoint,
 };
 
 /// A rope that cannot be.
@@ -480,6 +481,8 @@ impl Kinematics for Chain {
         place::point(&self.line, &self.start, &self.part(on).ok()?)
     }
 }
+
+impl Inertial for Chain {}
 
 impl Elimination for Chain {}
 

@@ -111,6 +111,8 @@ fn meshes_are_arrays() {
             degree: None,
             material: Material::LinearElastic(material),
             strain: None,
+            density: None,
+            velocity: None,
             edges: Named::default(),
         };
         problem.bodies.insert("bar".into(), Body::Solid(solid));

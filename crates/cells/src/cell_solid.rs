@@ -15,6 +15,7 @@ mod foot;
 mod hold;
 mod linear;
 mod loads;
+mod mass;
 mod master;
 mod shown;
 mod surface;
@@ -41,7 +42,7 @@ use signorini_mechanics as mechanics;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Direction,
-    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Samples, Sampling, Slack,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Samples, Sampling, Slack,
     SlavePoint, Subspaces,
 };
 use signorini_solve::blocks::Block;
@@ -76,6 +77,8 @@ pub struct CellSolid<const D: usize> {
     is_zero: Vec<bool>,
     size: f64,
     shown: OnceLock<Shown<D>>,
+    /// Mass per volume.
+    density: Option<f64>,
 }
 
 impl<const D: usize> CellSolid<D> {
@@ -134,6 +137,7 @@ impl<const D: usize> CellSolid<D> {
             is_zero,
             size,
             shown: OnceLock::new(),
+            density: None,
         })
     }
 
@@ -397,7 +401,11 @@ impl<const D: usize> Body for CellSolid<D> {
 
 impl<const D: usize> Kinematics for CellSolid<D> {}
 
-impl<const D: usize> Inertial for CellSolid<D> {}
+impl<const D: usize> Inertial for CellSolid<D> {
+    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        Ok(self.density.map(|density| self.mass_with(density)))
+    }
+}
 
 impl<const D: usize> Elimination for CellSolid<D> {
     fn is_linear(&self) -> bool {

@@ -101,6 +101,8 @@ pub struct Description {
     pub pieces: Pieces,
     pub islands: Islands,
     pub material: SolidMaterial,
+    /// Mass per volume.
+    pub density: Option<f64>,
     /// A factor of all moduli, with its largest value.
     pub modulus: Option<(Scalar, f64)>,
     /// The whole recovered boundary is always there as `boundary`.
@@ -135,6 +137,7 @@ impl Description {
             pieces,
             islands,
             material: material.into(),
+            density: None,
             modulus: None,
             places: BTreeMap::new(),
             memory: f64::INFINITY,
@@ -214,7 +217,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
     let body = CellBody::new(region, tree, setup, CellMaterial { solid: d.material.clone(), modulus, space: d.space })?;
     let (findings, volume, cells) = (body.findings().clone(), body.volume(), body.cells().len());
     let places = d.places.iter().map(|(name, part)| (name.clone(), part.place::<D>())).collect();
-    let body = CellSolid::new(&d.name, body, &places)?;
+    let body = CellSolid::new(&d.name, body, &places)?.with_density(d.density);
     let bounds = [spatial(&bounds.min).into(), spatial(&bounds.max).into()];
     Ok(Built { body: Box::new(body), findings, volume, cells, bounds })
 }

@@ -11,7 +11,7 @@ pub use crate::points::{
 
 use crate::axes::Axes;
 use crate::curve::Curve;
-pub use crate::dynamics::Inertial;
+pub use crate::dynamics::{Inertial, Mass};
 use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
 use signorini_geometry::{Point, Vector};
@@ -38,6 +38,14 @@ impl Contribution {
     /// No forces on so many unknowns.
     pub fn new(unknowns: usize) -> Self {
         Contribution { forces: vec![0.0; unknowns], blocks: Vec::new() }
+    }
+
+    /// Multiplies all by a factor.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        if factor != 1.0 {
+            let values = self.blocks.iter_mut().flat_map(|block| &mut block.1);
+            self.forces.iter_mut().chain(values).for_each(|v| *v *= factor);
+        }
     }
 
     /// Adds to the derivative a dense block, row by row.

@@ -65,7 +65,9 @@ impl System {
 
     /// Where the stiffness of bodies goes in a state.
     pub(crate) fn stiffness(&self, state: &SystemState) -> Result<Stiffness, AssemblyError> {
-        Ok(if self.is_iterative(state)? {
+        Ok(if self.step.is_some() {
+            Stiffness::InTangent
+        } else if self.is_iterative(state)? {
             Stiffness::KeptByBodies
         } else if self.solver == LinearSolver::Automatic && self.is_condensed().contains(&true) {
             Stiffness::Condensed

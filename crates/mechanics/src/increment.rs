@@ -4,6 +4,7 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::UnstableMaterial;
+use crate::dynamics::{Dynamics, Moved};
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -11,7 +12,7 @@ use crate::points::Order;
 use crate::shown_surface::ShownSurface;
 use crate::site_result::{SiteResult, with_rest};
 use crate::stability::{Stability, UnstableMode};
-use crate::system::{AssemblyError, System, SystemState};
+use crate::system::{Assembled, AssemblyError, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
@@ -45,6 +46,8 @@ pub struct IncrementResult {
     pub is_indeterminate: bool,
     /// None of systems that cannot be unstable, or whose tangent is never factorised.
     pub stability: Option<Stability>,
+    /// How bodies moved; none of equilibria.
+    pub moved: Option<Moved>,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -125,6 +128,9 @@ impl System {
         if self.is_rigid() {
             return self.solve_rigid(from, time, report);
         }
+        if let Some(dynamics) = self.dynamics {
+            return self.solve_in_time(from, time, &dynamics, report);
+        }
         let kept = self.histories();
         let start = self.begin(from, time)?;
         let found = self
@@ -142,6 +148,39 @@ impl System {
                 Err(error)
             }
         }
+    }
+
+    /// The state that bodies move to by a time.
+    fn solve_in_time(
+        &mut self,
+        from: &SystemState,
+        time: f64,
+        dynamics: &Dynamics,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let kept = self.histories();
+        let mut from = from.clone();
+        let step = self.time_step(&mut from, time, dynamics)?;
+        let start = self.begin(&from, time)?;
+        self.step = Some(step);
+        let found = self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
+        self.end();
+        let step = self.step.take();
+        let found = found.and_then(|(mut state, mut result)| {
+            if let Some(step) = &step {
+                self.end_time_step(step, &mut state)?;
+                let before = SystemState { time: from.time, multipliers: start.multipliers.clone(), ..from.clone() };
+                self.restore_energy(step, &before, &mut state)?;
+            }
+            self.add_supports_in_motion(&state, &mut result)?;
+            let (before, after, inertia) = (self.moving(&from), self.moving(&state), self.inertia(&state));
+            result.moved = Some(Moved { before, after, inertia });
+            Ok((state, result))
+        });
+        if found.is_err() {
+            self.put_back(&kept);
+        }
+        found
     }
 
     /// The state from which an increment to a time starts, what is prescribed brought there.
@@ -203,15 +242,18 @@ impl System {
             };
             // Without a guess which sites carry, multipliers start from what penalties find.
             let exact = self.contacts.iter().any(|c| c.law().is_exact());
-            if exact && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
+            if exact && self.step.is_none() && changes.is_empty() && state.multipliers.iter().all(|m| *m == 0.0) {
                 state.multipliers = self.initial_multipliers(&state, time)?;
             }
-            let guessed = !exact || state.multipliers.iter().any(|m| *m != 0.0);
+            let guessed = !exact || self.step.is_some() || state.multipliers.iter().any(|m| *m != 0.0);
             let direct = if guessed { Some(self.inner(&state, time, &mut solved, &mut counted)) } else { None };
             let found = match direct {
                 Some(Ok(found)) => found,
                 Some(Err(error))
-                    if self.contacts.is_empty() || self.follows_its_path() || error == IncrementError::Interrupted =>
+                    if self.contacts.is_empty()
+                        || self.step.is_some()
+                        || self.follows_its_path()
+                        || error == IncrementError::Interrupted =>
                 {
                     return Err(error);
                 }
@@ -250,7 +292,7 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         // What is slack has no stiffness at all: only where it settles has it some.
-        if self.is_slack(start) {
+        if self.step.is_none() && self.is_slack(start) {
             match self.settled(start, time, solved, report) {
                 Err(error) if is_curable(&error) => {}
                 found => return found,
@@ -274,6 +316,9 @@ impl System {
                 exact.for_each(|law| _ = law.make_trials(!law.is_soft));
                 return found;
             }
+        }
+        if self.step.is_some() {
+            return Err(failed);
         }
         // No other way leads where there is nothing to find.
         let (first, _) = self.numbering();
@@ -323,9 +368,10 @@ impl System {
                 // Newton's method may find a body far away, where it touches nothing, or on the other side of another, or one that
                 // slid though friction holds it.
                 Ok(found)
-                    if (problem.leaps(start, &found.state) && !problem.is_pulled(start))
-                        || problem.passes(start, &found.state)
-                        || problem.slides(start, &found.state) =>
+                    if problem.passes(start, &found.state)
+                        || self.step.is_none()
+                            && ((problem.leaps(start, &found.state) && !problem.is_pulled(start))
+                                || problem.slides(start, &found.state)) =>
                 {
                     let history = found.history;
                     Err(IncrementError::NotConverged { history, worst: None })
@@ -358,7 +404,7 @@ impl System {
             inverses: Inverses::default(),
             analysis: Analysis::default(),
             symbolic: self.dissected(),
-            is_free: stiffness != Stiffness::KeptByBodies && self.has_free_body(),
+            is_free: self.step.is_none() && stiffness != Stiffness::KeptByBodies && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),
             goes_down: false,
@@ -402,6 +448,29 @@ impl System {
         Ok(f64::EPSILON * stiffest * self.size())
     }
 
+    /// The force and moment of each support on the bodies, of the residual at a state.
+    fn support_forces(&self, at: &Assembled, state: &SystemState) -> Vec<[Vector<3>; 2]> {
+        let mut out = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
+        for held in &at.single {
+            let (unknown, factor) = held.constraint.terms[0];
+            held.add_reaction(at.residual[unknown as usize] / factor, &mut out);
+        }
+        for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
+            held.add_reaction(-reaction, &mut out);
+        }
+        at.weakly_held.iter().for_each(|(support, force)| out[*support][0] += force);
+        out
+    }
+
+    /// The forces of supports at the end of an increment in time, in place of those of the weighted equation.
+    fn add_supports_in_motion(&self, state: &SystemState, result: &mut IncrementResult) -> Result<(), IncrementError> {
+        let mut at = self.assemble(state, state.time, Order::First)?;
+        let (_, count) = self.numbering();
+        self.add_momenta(&state.accelerations, 1.0, &mut at.residual[..count]);
+        result.support_forces = self.support_forces(&at, state);
+        Ok(())
+    }
+
     /// What a state is reported as.
     pub(crate) fn result(
         &self,
@@ -412,17 +481,9 @@ impl System {
     ) -> Result<IncrementResult, IncrementError> {
         let (_, count) = self.numbering();
         let at = self.assemble(state, time, Order::First)?;
-        let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
+        let support_forces = self.support_forces(&at, state);
         let mut residual = at.residual.clone();
-        for held in &at.single {
-            let (unknown, factor) = held.constraint.terms[0];
-            held.add_reaction(residual[unknown as usize] / factor, &mut support_forces);
-            residual[unknown as usize] = 0.0;
-        }
-        for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
-            held.add_reaction(-reaction, &mut support_forces);
-        }
-        at.weakly_held.iter().for_each(|(support, force)| support_forces[*support][0] += force);
+        at.single.iter().for_each(|held| residual[held.constraint.terms[0].0 as usize] = 0.0);
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
         // Where no force acts what is left is the rounding of the positions.
         let most = most.max(1e10 * rounding);

@@ -9,7 +9,7 @@
 //! - `density`: how densely a body is tested against faces.
 //! - [`contact_law`]: law and enforcement at a point; [`contact`]: the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
-//! - [`dynamics`]: motion with inertia.
+//! - [`dynamics`]: motion with inertia; [`time_step`]: one increment of it.
 //! - [`system`]: bodies, supports, loads and contacts, assembled.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
@@ -64,6 +64,7 @@ mod slack;
 pub mod stability;
 pub mod surface;
 pub mod system;
+pub mod time_step;
 mod unstable;
 
 pub use arc_length::{Path, PathIncrement};
@@ -76,7 +77,7 @@ pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;
 pub use curve::Curve;
 pub use density::test_densely;
-pub use dynamics::{Dynamics, Inertial, Mass, SpinInertia};
+pub use dynamics::{Dynamics, Inertial, Mass, Moved, Moving, SpinInertia};
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;

@@ -15,6 +15,8 @@ pub struct Saved {
     pub time: f64,
     /// History and scales of each contact.
     pub contacts: Vec<[Vec<f64>; 2]>,
+    /// Velocities, accelerations, and what equilibrium lacks; none at rest.
+    pub motion: [Vec<f64>; 3],
 }
 
 impl System {
@@ -26,13 +28,16 @@ impl System {
             reactions: state.reactions.clone(),
             time: state.time,
             contacts: self.contacts.iter().map(|c| c.history()).collect(),
+            motion: [state.velocities.clone(), state.accelerations.clone(), state.forces.clone()],
         }
     }
 
     /// Goes on from what was saved; none where that is not of this system.
     pub fn restore(&mut self, saved: Saved) -> Option<SystemState> {
         let mut state = self.start();
+        let (_, unknowns) = self.numbering();
         let fits = saved.bodies.len() == state.bodies.len()
+            && saved.motion.iter().all(|list| list.is_empty() || list.len() == unknowns)
             && (saved.bodies.iter().zip(&state.bodies))
                 .all(|(s, b)| s[0].len() == b.configuration.len() && s[1].len() == b.internal.len())
             && saved.multipliers.len() == state.multipliers.len()
@@ -43,6 +48,7 @@ impl System {
         let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
         state.bodies = saved.bodies.into_iter().map(body).collect();
         (state.multipliers, state.reactions, state.time) = (saved.multipliers, saved.reactions, saved.time);
+        [state.velocities, state.accelerations, state.forces] = saved.motion;
         let before = self.histories();
         for (contact, history) in self.contacts.iter_mut().zip(&saved.contacts) {
             if contact.restore(history).is_err() {

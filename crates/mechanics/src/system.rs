@@ -12,6 +12,7 @@ use crate::linear_bodies::LinearBodies;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
+use crate::time_step::TimeStep;
 use crate::unstable::Unstable;
 use signorini_geometry::{Point, Vector};
 use signorini_solve::general::{Entries, Matrix};
@@ -89,6 +90,8 @@ pub enum TimedLoad {
     FollowerMoment(TimeVectorField),
     Tension(TimeField),
     Springs(Vector<3>),
+    /// Gravity: the acceleration by time, on the mass of the whole body.
+    Weight(Arc<dyn Fn(f64) -> Vector<3> + Send + Sync>, Arc<Mass>),
 }
 
 /// A load with its place.
@@ -121,6 +124,10 @@ impl PlacedLoad {
             TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&place, time))),
             TimedLoad::Tension(f) => act(&Load::Tension(f(&place, time))),
             TimedLoad::Springs(k) => act(&Load::Springs(*k)),
+            TimedLoad::Weight(acceleration, mass) => {
+                mass.add_weight(body, state, &acceleration(time), &mut out.forces);
+                Ok(())
+            }
         }
     }
 }
@@ -141,6 +148,8 @@ pub struct System {
     pub dynamics: Option<Dynamics>,
     /// What each body weighs; nothing before dynamics are asked for.
     pub masses: Vec<Option<Mass>>,
+    /// The increment in time that is being solved.
+    pub step: Option<TimeStep>,
 }
 
 /// A state of the system.
@@ -161,6 +170,15 @@ pub struct SystemState {
     pub velocities: Vec<f64>,
     /// Their accelerations.
     pub accelerations: Vec<f64>,
+    /// What equilibrium lacks where there is a mass.
+    pub(crate) forces: Vec<f64>,
+}
+
+impl SystemState {
+    /// Takes all motion out of the state.
+    pub fn come_to_rest(&mut self) {
+        (self.velocities, self.accelerations, self.forces) = (Vec::new(), Vec::new(), Vec::new());
+    }
 }
 
 /// Why a system cannot be assembled.
@@ -401,6 +419,7 @@ impl System {
             travel,
             velocities: at.velocities.clone(),
             accelerations: at.accelerations.clone(),
+            forces: at.forces.clone(),
         }
     }
 
@@ -445,6 +464,9 @@ impl System {
             let mut out = Contribution::new(body.unknowns());
             let order = if stiffness == Stiffness::KeptByBodies { Order::First } else { constant(k) };
             energy += body.internal(state, order, &mut out)?;
+            if let Some(step) = &self.step {
+                out.scale(step.share);
+            }
             add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         for load in &self.loads {
@@ -465,6 +487,10 @@ impl System {
                 add(&out, first[support.part.body], &mut residual, &mut sizes, &mut tangent);
                 weakly_held.push((number, force));
             }
+        }
+        if let Some(step) = &self.step {
+            let tangent = (order == Order::Second).then_some(&mut tangent);
+            step.add_to(self, state, (&mut residual, &mut sizes), tangent);
         }
         let mut lost = 0;
         for (contact, own) in self.contacts.iter().zip(self.own(state)) {

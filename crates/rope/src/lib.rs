@@ -1,7 +1,7 @@
 //! Bodies that are curves: ropes, cables and geometrically exact beams, and contact between curves.
 //!
 //! - [`path`]: the curve along which a body lies at the start; [`centreline`]: the curve that its numbers make.
-//! - [`section`]: shapes and stiffness of cross-sections; [`quaternion`]: how they turn.
+//! - [`section`]: shapes and stiffness of cross-sections; [`quaternion`]: how they turn; [`mass`]: what they weigh.
 //! - [`beam`]: geometrically exact beams with shear and torsion.
 //! - [`cable`]: smooth cables, and beams free of torsion.
 //! - [`chain`]: ropes and nets of straight elements; the search of their form.
@@ -17,6 +17,7 @@ pub mod curve_body;
 pub mod curve_pair;
 pub mod fields;
 pub mod hermite;
+pub mod mass;
 pub mod path;
 pub mod place;
 pub mod quaternion;

@@ -3,6 +3,7 @@
 //! The axes of a section are `d_1` along the beam, `d_2` and `d_3` across. Shear correction factors are those of Cowper
 //! (1966); torsion of a rectangle follows Saint-Venant's series.
 
+use crate::mass::SectionMass;
 use std::f64::consts::PI;
 
 /// Stiffness of a section: forces per strain, moments per curvature.
@@ -79,6 +80,20 @@ impl Section {
                 }
             }
         })
+    }
+
+    /// Mass and inertia per length with a mass per volume.
+    pub fn mass(&self, density: f64) -> SectionMass {
+        let (mass, [about_2, about_3]) = match *self {
+            Section::Circle { radius } => {
+                let area = PI * radius * radius;
+                (density * area, [0.25 * radius * radius; 2])
+            }
+            Section::Rectangle { width, height } => {
+                (density * width * height, [height, width].map(|across| across * across / 12.0))
+            }
+        };
+        SectionMass { mass, inertia: [mass * (about_2 + about_3), mass * about_2, mass * about_3] }
     }
 
     /// The radius of the section about its axis, where it has one: what touches.

@@ -14,6 +14,7 @@ mod fields;
 mod history;
 mod hold;
 mod loads;
+mod mass;
 mod master;
 mod moments;
 mod projection;
@@ -35,7 +36,7 @@ use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constraint, ContactSides, Contribution, Curve, Direction,
-    Elimination, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Elimination, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
     Surface,
 };
 use spatial::spatial;
@@ -76,6 +77,8 @@ pub struct SolidBody<const D: usize> {
     position: Vec<Point<D>>,
     size: f64,
     history: History,
+    /// Mass per volume.
+    density: Option<f64>,
 }
 
 impl<const D: usize> SolidBody<D> {
@@ -143,6 +146,7 @@ impl<const D: usize> SolidBody<D> {
             position,
             size,
             history: History::default(),
+            density: None,
         };
         let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
         out.history = History::new(out.law(), points);
@@ -392,7 +396,11 @@ impl<const D: usize> Body for SolidBody<D> {
 
 impl<const D: usize> Kinematics for SolidBody<D> {}
 
-impl<const D: usize> Inertial for SolidBody<D> {}
+impl<const D: usize> Inertial for SolidBody<D> {
+    fn mass(&self, touching: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        self.density.map(|density| self.mass_with(density, touching)).transpose()
+    }
+}
 
 impl<const D: usize> Elimination for SolidBody<D> {
     fn cliques(&self) -> Vec<Vec<u32>> {

@@ -9,15 +9,18 @@ use crate::centreline::Centreline;
 use crate::curve_body::{self, CurveBody, SectionMotion};
 use crate::fields::{add_element_data, add_point_data, through};
 use crate::hermite::{self, THREE, TWO};
+use crate::mass::{self, SectionMass};
 use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack,
     SlavePoint,
 };
+use signorini_mechanics::SpinInertia;
+use std::collections::BTreeMap;
 
 /// Numbers of a node in a configuration, and unknowns.
 pub(super) const NUMBERS: usize = 10;
@@ -34,9 +37,16 @@ pub struct Beam {
     pub(super) radius: f64,
     pub(super) contact_points: usize,
     pub(super) start: Vec<f64>,
+    pub(super) mass: Option<SectionMass>,
 }
 
 impl Beam {
+    /// The beam with a mass of its sections.
+    pub fn with_mass(mut self, mass: SectionMass) -> Self {
+        self.mass = Some(mass);
+        self
+    }
+
     /// Tests contact at so many points of Gauss of each element instead of four.
     pub fn with_contact_points(mut self, count: usize) -> Self {
         self.contact_points = count.max(1);
@@ -77,6 +87,13 @@ impl Beam {
     fn spins_of(&self, element: usize) -> [u32; 3] {
         let unknowns = self.unknowns_of(element);
         SPINS.map(|k| unknowns[k])
+    }
+
+    /// The axes of the section whose spins begin with an unknown.
+    fn frame(&self, state: &BodyState, first: u32) -> Matrix<3> {
+        let (first, of_nodes) = (first as usize, NODE * self.line.nodes());
+        let at = if first < of_nodes { first / NODE * NUMBERS + 6 } else { self.middle((first - of_nodes) / 3) };
+        quaternion::rotation(&Quaternion::from_column_slice(&state.configuration[at..at + 4]))
     }
 
     fn predicted(internal: &[f64], element: usize) -> Stresses {
@@ -402,7 +419,32 @@ impl Kinematics for Beam {
     }
 }
 
-impl Inertial for Beam {}
+impl Inertial for Beam {
+    /// Rotations count at nodes and middles, by Simpson's rule.
+    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        let Some(own) = &self.mass else { return Ok(None) };
+        let mut out = mass::consistent(&self.line, own.mass, NODE);
+        let mut lengths: BTreeMap<u32, f64> = BTreeMap::new();
+        for e in 0..self.elements.len() {
+            let parts = self.spins_of(e).into_iter().zip([1.0, 1.0, 4.0]);
+            parts.for_each(|(u, part)| *lengths.entry(u).or_default() += self.line.lengths[e] * part / 6.0);
+        }
+        let start = self.start();
+        out.spins = (lengths.into_iter())
+            .map(|(first, length)| {
+                let frame = self.frame(&start, first);
+                let own = Matrix::<3>::from_diagonal(&(Vector::<3>::from(own.inertia) * length));
+                let inertia = frame * own * frame.transpose();
+                SpinInertia { unknowns: [first, first + 1, first + 2], inertia }
+            })
+            .collect();
+        Ok(Some(out))
+    }
+
+    fn orientation(&self, state: &BodyState, unknowns: [u32; 3]) -> Matrix<3> {
+        self.frame(state, unknowns[0]) * self.frame(&self.start(), unknowns[0]).transpose()
+    }
+}
 
 impl Elimination for Beam {}
 

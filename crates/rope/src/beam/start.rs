@@ -99,6 +99,7 @@ impl Beam {
             radius,
             contact_points: 4,
             start,
+            mass: None,
         };
         for node in 0..nodes {
             beam.start[NUMBERS * node + 6..NUMBERS * (node + 1)].copy_from_slice(quaternions[2 * node].as_slice());

@@ -9,6 +9,7 @@ use crate::chain::body::{ChainError, ReferenceLength, check_radius, positive};
 use crate::curve_body::{self, CurveBody};
 use crate::fields::{add_point_data, through};
 use crate::hermite::THREE;
+use crate::mass;
 use crate::path::Sampled;
 use crate::place::{self, Line};
 use crate::quaternion;
@@ -16,7 +17,7 @@ use signorini_geometry::{Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
+    Elimination, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
 
 /// A cable that cannot be.
@@ -39,6 +40,7 @@ pub struct Cable {
     start: Vec<f64>,
     /// The stiffness that is stated.
     stiffness: f64,
+    mass_per_length: Option<f64>,
 }
 
 impl Cable {
@@ -77,12 +79,18 @@ impl Cable {
         let elements = (0..line.elements())
             .map(|e| Element::new(line.lengths[e], axial, bending, carries, &line.nodal(&start, e)))
             .collect();
-        Ok(Cable { name: name.to_string(), line, elements, radius, contact_points: 4, start, stiffness: axial })
+        Ok(Cable { name: name.to_string(), line, elements, radius, contact_points: 4, start, stiffness: axial, mass_per_length: None })
     }
 
     /// Tests contact at so many points of Gauss of each element instead of four.
     pub fn with_contact_points(mut self, count: usize) -> Self {
         self.contact_points = count.max(1);
+        self
+    }
+
+    /// The cable with a mass per unstrained length.
+    pub fn with_mass(mut self, mass_per_length: f64) -> Self {
+        self.mass_per_length = Some(mass_per_length);
         self
     }
 
@@ -287,7 +295,11 @@ impl Kinematics for Cable {
     }
 }
 
-impl Inertial for Cable {}
+impl Inertial for Cable {
+    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        Ok(self.mass_per_length.map(|mass| mass::consistent(&self.line, mass, 6)))
+    }
+}
 
 impl Elimination for Cable {}
 

@@ -12,13 +12,14 @@ use super::winch::Winch;
 use crate::centreline::{Centreline, Closure, Continuity};
 use crate::curve_body::{self, CurveBody};
 use crate::path::Sampled;
+use crate::mass;
 use crate::place::{self, Line, Part};
 use crate::quaternion::axis;
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Function, Hold, Inertial, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack,
+    Elimination, Function, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack,
     SlavePoint,
 };
 
@@ -95,6 +96,7 @@ pub struct Chain {
     pub(super) pulleys: Vec<usize>,
     pub(super) winch: Option<Winch>,
     pub(super) start: Vec<f64>,
+    mass_per_length: Option<f64>,
 }
 
 impl Chain {
@@ -131,7 +133,14 @@ impl Chain {
             pulleys: Vec::new(),
             winch: None,
             start: path.positions.iter().flat_map(|p| [p[0], p[1], p[2]]).collect(),
+            mass_per_length: None,
         })
+    }
+
+    /// The rope with a mass per unstrained length.
+    pub fn with_mass(mut self, mass_per_length: f64) -> Self {
+        self.mass_per_length = Some(mass_per_length);
+        self
     }
 
     /// Lets the rope run without friction through pulleys at nodes, which are to be held or borne.
@@ -482,7 +491,11 @@ impl Kinematics for Chain {
     }
 }
 
-impl Inertial for Chain {}
+impl Inertial for Chain {
+    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        Ok(self.mass_per_length.map(|mass| mass::lumped(&self.line, mass)))
+    }
+}
 
 impl Elimination for Chain {}
 

@@ -23,7 +23,7 @@ use frame::{Frame, take};
 use path::OnPath;
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_mechanics::{IncrementError, IncrementResult, Saved, Stability, SystemState};
+use signorini_mechanics::{IncrementError, IncrementResult, Moving, Saved, Stability, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -98,6 +98,7 @@ impl MechanicsModel {
         let unknowns: usize = self.plan.system.bodies.iter().map(|b| b.unknowns()).sum();
         let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
         let mut lost: Option<Stability> = None;
+        let mut moved: Option<Vec<Moving>> = None;
         let mut reason: Option<IncrementError> = None;
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
@@ -120,6 +121,9 @@ impl MechanicsModel {
                     iterations += result.iterations;
                     dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
                     in_bodies.iter_mut().zip(&result.dissipated_in_bodies).for_each(|(sum, own)| *sum += own);
+                    if let Some(own) = &mut result.moved {
+                        own.before.clone_from(moved.get_or_insert_with(|| own.before.clone()));
+                    }
                     // An increment that was cut tells of the first part that lost its stability.
                     if let Some(told) = &mut result.stability {
                         if let Some(before) = lost.take() {
@@ -162,6 +166,17 @@ impl MechanicsModel {
                     size *= CUT;
                 }
             }
+        }
+    }
+
+    /// Lets bodies move as the step of an increment asks for: where they begin to move they have the velocities of the case.
+    fn set_in_motion(&mut self, index: usize) {
+        let dynamics = self.plan.motion.dynamics.get(index).copied().flatten();
+        self.plan.system.dynamics = dynamics;
+        if dynamics.is_none() {
+            self.state.come_to_rest();
+        } else if self.state.velocities.is_empty() {
+            self.state.velocities.clone_from(&self.plan.motion.velocities);
         }
     }
 
@@ -300,6 +315,7 @@ impl Model for MechanicsModel {
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError> {
         let before = if index == 0 { 0.0 } else { self.state.time };
+        self.set_in_motion(index);
         let found = match self.plan.arc_lengths[index] {
             Some(planned) => match self.follow(index, planned, progress)? {
                 Some(found) => found,
@@ -440,10 +456,10 @@ impl Model for MechanicsModel {
             let frame = Frame { time: shown.time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() };
             frame.write(folder, next - 1)?;
         }
-        let Saved { bodies, multipliers, reactions, time, contacts } = self.plan.system.save(&self.state);
+        let Saved { bodies, multipliers, reactions, time, contacts, motion } = self.plan.system.save(&self.state);
         Ok(Some(json!({
             "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "time": time, "contacts": contacts,
-            "path": self.path, "audit": self.audit.save(),
+            "motion": motion, "path": self.path, "audit": self.audit.save(),
         })))
     }
 
@@ -458,6 +474,7 @@ impl Model for MechanicsModel {
                 reactions: take(&mut state["reactions"])?,
                 time: state["time"].as_f64()?,
                 contacts: take(&mut state["contacts"])?,
+                motion: take(&mut state["motion"])?,
             })
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));

@@ -11,6 +11,7 @@ mod closest_points;
 mod cosine_floor;
 mod curves;
 mod docs;
+mod dynamics;
 mod events;
 mod fit;
 mod flat_floor;

@@ -92,6 +92,7 @@ impl Planner<'_> {
             self.warn(format!("`{name}`: cells of degree 1 lock where they yield: use degree 2 or more"));
         }
         let mut made = Description::new(name, geometry, space, self.grid_of_cells(key)?, degree, material);
+        made.density = self.density(key.density.as_ref())?;
         made.bounds = bounds;
         made.modulus = modulus;
         made.memory = memory_at_hand();

@@ -18,6 +18,7 @@ use signorini_rope::centreline::{self, Closure};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::ReferenceLength;
 use signorini_rope::path::{Path, Sampled};
+use signorini_rope::mass::SectionMass;
 use signorini_rope::section::{Section, Stiffness};
 
 const FORCE: [i32; 3] = [0, 1, 0];
@@ -91,6 +92,10 @@ impl Planner<'_> {
             Some(n) => cable.with_contact_points(self.count(Some(n), 4)?),
             None => cable,
         };
+        let cable = match self.mass_per_length(key)? {
+            Some(mass) => cable.with_mass(mass),
+            None => cable,
+        };
         Ok((Box::new(cable), radius))
     }
 
@@ -99,7 +104,7 @@ impl Planner<'_> {
         let problem = self.problem;
         let path = self.path(&key.path)?;
         let cells = self.count(key.cells.as_ref(), BEAM_CELLS)?;
-        let (stiffness, own_radius) = self.section(key)?;
+        let (stiffness, own_radius, mass) = self.section(key)?;
         let radius = match &key.radius {
             Some(_) => self.not_negative_length(key.radius.as_ref())?,
             None => own_radius.unwrap_or(0.0),
@@ -118,6 +123,7 @@ impl Planner<'_> {
             let cable = Cable::new(name, &sampled, axial, bending, carries, ReferenceLength::Path, radius)
                 .map_err(|e| refused(e.to_string()))?;
             let cable = points.map_or(cable.clone(), |n| cable.with_contact_points(n));
+            let cable = mass.map_or(cable.clone(), |mass| cable.with_mass(mass.mass));
             return Ok((Box::new(cable), radius));
         }
         let orientation = match &key.orientation {
@@ -126,11 +132,12 @@ impl Planner<'_> {
         };
         let beam = BeamBody::new(name, &sampled, orientation, stiffness, radius).map_err(|e| refused(e.to_string()))?;
         let beam = points.map_or(beam.clone(), |n| beam.with_contact_points(n));
+        let beam = mass.map_or(beam.clone(), |mass| beam.with_mass(mass));
         Ok((Box::new(beam), radius))
     }
 
-    /// The stiffness of a section, and its radius if it is round.
-    fn section(&self, key: &Beam) -> Result<(Stiffness, Option<f64>), CaseError> {
+    /// The stiffness of a section, its radius if it is round, and its mass if it has one.
+    pub(super) fn section(&self, key: &Beam) -> Result<(Stiffness, Option<f64>, Option<SectionMass>), CaseError> {
         let problem = self.problem;
         let section = match &key.section {
             problem::Section::Circle(circle) => {
@@ -165,6 +172,7 @@ impl Planner<'_> {
                         bending,
                     },
                     None,
+                    None,
                 ));
             }
         };
@@ -180,7 +188,8 @@ impl Planner<'_> {
         let ratio = self.reader.number(&elastic.poissons_ratio, NONE)?;
         let stiffness =
             section.stiffness(modulus, ratio).map_err(|e| problem.error(&elastic.poissons_ratio, e.to_string()))?;
-        Ok((stiffness, section.radius()))
+        let mass = self.density(key.density.as_ref())?.map(|density| section.mass(density));
+        Ok((stiffness, section.radius(), mass))
     }
 
     fn count(&self, key: Option<&i64>, otherwise: usize) -> Result<usize, CaseError> {

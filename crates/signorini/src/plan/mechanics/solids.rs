@@ -72,6 +72,10 @@ impl Planner<'_> {
             SolidError::Material { .. } => self.problem.error(&key.material, e.to_string()),
             _ => self.problem.error(&key.mesh, e.to_string()),
         })?;
+        let body = match self.density(key.density.as_ref())? {
+            Some(density) => body.with_density(density),
+            None => body,
+        };
         let edges = self.edges(key)?;
         let body = body.with_edges(&edges).map_err(|e| self.wrong_edge(key, &e))?;
         Ok(PlannedSolid { body: body.into_body(), on_axis, pieces })

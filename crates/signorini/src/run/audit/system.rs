@@ -307,6 +307,20 @@ fn forces(
         drives: true,
         reacts: true,
     }));
+    if let Some(moved) = &result.moved {
+        for (body, (force, moment)) in moved.inertia.iter().enumerate() {
+            let gained = moved.after[body].kinetic_energy - moved.before[body].kinetic_energy;
+            out.push(Acting {
+                name: "inertia".into(),
+                body,
+                force: *force,
+                moment: *moment,
+                work: Some([-gained, 0.0]),
+                drives: true,
+                reacts: false,
+            });
+        }
+    }
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
         let body = load.part.body;

@@ -1,0 +1,247 @@
+//! Motion of deformable bodies with inertia: closed forms, conservation, order in time.
+
+use super::{error, last_step, number, set, summary};
+use serde_json::Value;
+
+fn steps(found: &Value) -> Vec<&Value> {
+    let list = found["steps"].as_array().expect("steps");
+    list.iter().filter(|step| step["kinetic_energy"].is_number()).collect()
+}
+
+/// Stored and kinetic energy.
+fn energy(step: &Value) -> f64 {
+    number(&step["energy"]) + number(&step["kinetic_energy"])
+}
+
+fn velocity(step: &Value, body: &str, axis: usize) -> f64 {
+    number(&step["motion"][body]["velocity"][axis])
+}
+
+/// SDNV100 of the validation manual of Code_Aster: a bar of length .2, modulus 2e11, density 8000 strikes a wall with 100.
+const BAR: &str = r#"
+space = "plane_strain"
+[bodies.bar.solid]
+mesh.box = { min = [0, 0], max = [0.2, 0.02], cells = [40, 2] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 2e11, poissons_ratio = 0 }
+density = 8000
+velocity = [-100, 0]
+[bodies.wall.rigid]
+shape.plane = { point = [-0.002, 0], normal = [1, 0] }
+[contacts.impact]
+between = ["bar:left", "wall"]
+[[steps]]
+to = 140e-6
+increments = 140
+dynamics = {}
+"#;
+
+/// Waves of a bar: contact from .002/100 s on for 2 L/c with `c = 5000`, pressure `ρ c v`, and the energy that it came with.
+#[test]
+fn a_bar_leaves_a_wall_with_the_energy_that_it_came_with() {
+    let found = summary(BAR, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let steps = steps(&found);
+    let touches = |s: &&&Value| number(&s["contacts"]["impact"]["force"][0]) > 0.0;
+    let times: Vec<f64> = steps.iter().filter(touches).map(|s| number(&s["time"])).collect();
+    assert!((times[0] - 20e-6).abs() < 2e-6 && (times[times.len() - 1] - 100e-6).abs() < 3e-6, "{times:?}");
+    let mean = steps.iter().map(|s| number(&s["contacts"]["impact"]["force"][0])).sum::<f64>() * 1e-6;
+    // The impulse turns the momentum round but for the waves that stay.
+    assert!((mean / (2.0 * 8000.0 * 0.004 * 100.0) - 1.0).abs() < 0.02, "{mean}");
+    for step in &steps {
+        assert!((energy(step) / 160_000.0 - 1.0).abs() < 1e-10, "{}: {}", step["time"], energy(step));
+    }
+    let last = velocity(last_step(&found), "bar", 0);
+    assert!((96.0..100.0).contains(&last), "{last}");
+    // Damped by the method it is smooth, and leaves sooner with less.
+    let damped = summary(BAR, &set(&[("steps.0.dynamics", "{ spectral_radius = 0.8 }")]));
+    let most = |of: &Value| {
+        let steps = of["steps"].as_array().expect("steps").iter();
+        steps.map(|s| number(&s["contacts"]["impact"]["force"][0])).fold(0.0, f64::max)
+    };
+    assert!(most(&damped) < 1.2 * 8e7 && most(&found) > 1.2 * 8e7, "{} {}", most(&damped), most(&found));
+    assert!(energy(last_step(&damped)) < 160_000.0);
+}
+
+/// Two equal bars change their velocities; momentum and energy are those of the start.
+#[test]
+fn a_bar_strikes_a_bar() {
+    let bar = |name: &str, from: f64, velocity: f64| {
+        format!(
+            "[bodies.{name}.solid]\nmesh.box = {{ min = [{from}, 0], max = [{}, 0.02], cells = [30, 2] }}\ndegree = 2\n\
+             material.linear_elastic = {{ youngs_modulus = 2e11, poissons_ratio = 0.3 }}\ndensity = 8000\n\
+             velocity = [{velocity}, 0]\n",
+            from + 0.2
+        )
+    };
+    let case = format!(
+        "space = \"plane_stress\"\n{}{}[contacts.between]\nbetween = [\"first:right\", \"second:left\"]\n\
+         [[steps]]\nto = 110e-6\nincrements = 55\ndynamics = {{ spectral_radius = 1 }}\n",
+        bar("first", -0.2005, 20.0),
+        bar("second", 0.0, 0.0)
+    );
+    let found = summary(&case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    for step in steps(&found) {
+        let sum = velocity(step, "first", 0) + velocity(step, "second", 0);
+        assert!((sum - 20.0).abs() < 1e-9, "{sum}");
+        assert!((energy(step) / (0.5 * 8000.0 * 0.004 * 400.0) - 1.0).abs() < 1e-9, "{}", energy(step));
+    }
+    let last = last_step(&found);
+    assert!(velocity(last, "first", 0) < 1.5 && velocity(last, "second", 0) > 18.5, "{}", last["motion"]);
+}
+
+/// A block that falls, bounces on springs below it, or is damped: motions of one degree of freedom.
+const BLOCK: &str = r#"
+space = "3d"
+gravity = [0, 0, -10]
+[bodies.block.solid]
+mesh.box = { min = [0, 0, 0], max = [1, 2, 1], cells = [2, 2, 2] }
+material.linear_elastic = { youngs_modulus = 1e9, poissons_ratio = 0.3 }
+density = 100
+velocity = [3, 0, 0]
+[[steps]]
+to = 1
+increments = 8
+dynamics = {}
+[output]
+probes.corner = [1, 2, 1]
+"#;
+
+#[test]
+fn a_block_falls_as_bodies_do() {
+    let found = summary(BLOCK, &set(&[]));
+    let last = last_step(&found);
+    let moved: Vec<f64> = (0..3).map(|k| number(&last["probes"]["corner"]["displacement"][k])).collect();
+    for (moved, wanted) in moved.iter().zip([3.0, 0.0, -5.0]) {
+        assert!((moved - wanted).abs() < 1e-9, "{moved:?}");
+    }
+    assert!((number(&last["motion"]["block"]["mass"]) - 200.0).abs() < 1e-9);
+    assert!((velocity(last, "block", 2) + 10.0).abs() < 1e-9);
+    // Angular momentum about the origin, `m c × v` with the centre (3.5, 1, -4.5).
+    let angular: Vec<f64> = (0..3).map(|k| number(&last["motion"]["block"]["angular_momentum"][k])).collect();
+    for (found, wanted) in angular.iter().zip([200.0 * -10.0, 200.0 * (-4.5 * 3.0 + 3.5 * 10.0), 200.0 * -3.0]) {
+        assert!((found - wanted).abs() < 1e-6, "{angular:?}");
+    }
+    // A force per velocity of 2 m slows it down as exp(-2 t), with order two.
+    let of = |n: &str, more: &[(&str, &str)]| {
+        let list: Vec<(&str, &str)> =
+            [("gravity", "[0, 0, 0]"), ("steps.0.increments", n)].into_iter().chain(more.iter().copied()).collect();
+        summary(BLOCK, &set(&list))
+    };
+    let slowed = |n: &str| {
+        let found = of(n, &[("steps.0.dynamics", "{ damping.mass = 2 }")]);
+        number(&last_step(&found)["probes"]["corner"]["displacement"][0]) - 1.5 * (1.0 - (-2.0f64).exp())
+    };
+    let [coarse, fine] = [slowed("8"), slowed("16")];
+    assert!((1.9..2.1).contains(&(coarse / fine).log2()), "{coarse} {fine}");
+}
+
+/// A soft bed of springs below a stiff block: `x = v/ω sin ω t` with `ω² = k/m`, order two with and without damping by the method.
+#[test]
+fn a_block_swings_on_springs_with_order_two() {
+    let case = BLOCK.replace("gravity = [0, 0, -10]", "").replace("[3, 0, 0]", "[0, 0, 3]")
+        + "[supports.bed]\non = \"block:bottom\"\nspring = [2000, 2000, 2000]\n";
+    // Where the whole body swings: the mean is the momentum.
+    let exact = 3.0 * (20.0f64.sqrt()).cos();
+    for radius in ["1", "0.6"] {
+        let at = |n: &str| {
+            let dynamics = format!("{{ spectral_radius = {radius} }}");
+            let found = summary(&case, &set(&[("steps.0.increments", n), ("steps.0.dynamics", &dynamics)]));
+            assert_eq!(found["converged"], true, "{}", found["verdict"]);
+            velocity(last_step(&found), "block", 2) - exact
+        };
+        let [coarse, fine] = [at("40"), at("80")];
+        assert!((1.85..2.15).contains(&(coarse / fine).log2()), "{radius}: {coarse} {fine}");
+    }
+}
+
+/// A string under tension with the velocity of its first mode: after a quarter of the period `2 L/c` it is farthest, and still.
+#[test]
+fn a_string_swings_in_its_first_mode() {
+    let case = r#"
+space = "3d"
+[bodies.string.rope]
+path.points = [[0, 0, 0], [1, 0, 0]]
+cells = 40
+stiffness = 1e5
+pretension = 100
+mass_per_length = 0.01
+velocity = [0, 0, "0.1*sin(pi*x)"]
+[supports.ends]
+on = "string:ends"
+displacement = [0, 0, 0]
+[[steps]]
+to = 0.005
+increments = 50
+dynamics = {}
+[output]
+probes.middle = [0.5, 0, 0]
+"#;
+    let found = summary(case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let last = last_step(&found);
+    // c = 100: the amplitude is .1/(π c).
+    let moved = number(&last["probes"]["middle"]["displacement"][2]) / (0.1 / (std::f64::consts::PI * 100.0));
+    assert!((moved - 1.0).abs() < 2e-3, "{moved}");
+    let start = number(&steps(&found)[0]["kinetic_energy"]);
+    assert!(number(&last["kinetic_energy"]) < 1e-3 * start, "{last}");
+}
+
+/// A cantilever that is let go swings with its first frequency, `(1.8751)² √(EI/ρA)/L²`; its energy stays.
+#[test]
+fn a_cantilever_that_is_let_go_swings() {
+    let case = r#"
+space = "3d"
+[bodies.arm.beam]
+path.points = [[0, 0, 0], [1, 0, 0]]
+cells = 12
+section.circle.radius = 0.01
+material.linear_elastic = { youngs_modulus = 2e11, poissons_ratio = 0.3 }
+density = 8000
+[supports.clamp]
+on = "arm:start"
+displacement = [0, 0, 0]
+rotation = [0, 0, 0]
+[supports.lifted]
+on = "arm:end"
+displacement = ["free", "free", "0.01*t"]
+until = 1
+[[steps]]
+to = 1
+[[steps]]
+to = 1.0715
+increments = 40
+dynamics = {}
+[output]
+probes.tip = [1, 0, 0]
+"#;
+    let found = summary(case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let steps = steps(&found);
+    // One period: I/A = r²/4, √(E/ρ) = 5000, so that f = 1.8751² · 5000 · .005/2π = 13.99 per second.
+    let last = steps[steps.len() - 1];
+    let tip = number(&last["probes"]["tip"]["displacement"][2]);
+    assert!((tip / 0.01 - 1.0).abs() < 0.06, "{tip}");
+    let stored = number(&found["steps"][0]["energy"]);
+    for step in &steps {
+        assert!((energy(step) / stored - 1.0).abs() < 1e-2, "{}", energy(step) / stored);
+    }
+}
+
+#[test]
+fn motion_that_cannot_be_is_refused_at_its_key() {
+    let told = |key: &str, value: &str| error(BLOCK, &set(&[(key, value)]));
+    let found = told("steps.0.dynamics", "{ spectral_radius = 1.5 }");
+    assert!(found.contains("spectral radius of 1.5 is not between 0 and 1"), "{found}");
+    let found = told("bodies.block.solid.density", "-1");
+    assert!(found.contains("density"), "{found}");
+    let found = error(&BLOCK.replace("density = 100\n", "").replace("gravity = [0, 0, -10]\n", ""), &set(&[]));
+    assert!(found.contains("`block` has no density"), "{found}");
+    let found = error(&BLOCK.replace("density = 100\n", "").replace("dynamics = {}", ""), &set(&[]));
+    assert!(found.contains("no body has a mass"), "{found}");
+    let found = told("steps.0.dynamics", "{ damping.stiffness = -1 }");
+    assert!(found.contains("damping of -1"), "{found}");
+    let found = told("steps.0.control", "{ arc_length = { size = 0.1 } }");
+    assert!(found.contains("in time"), "{found}");
+}

@@ -74,6 +74,8 @@ pub struct Moved {
     pub after: Vec<Moving>,
     /// Resultant of `-M a` at the end, and its moment about the origin; none of bodies that turn.
     pub inertia: Vec<(Vector<3>, Option<Vector<3>>)>,
+    /// Energy that damping took.
+    pub damped: f64,
 }
 
 /// What moves: kinetic energy and momenta of a body.

@@ -163,18 +163,21 @@ impl System {
         let step = self.time_step(&mut from, time, dynamics)?;
         let start = self.begin(&from, time)?;
         self.step = Some(step);
-        let found = self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
+        let found =
+            self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
         self.end();
         let step = self.step.take();
         let found = found.and_then(|(mut state, mut result)| {
+            let mut damped = 0.0;
             if let Some(step) = &step {
                 self.end_time_step(step, &mut state)?;
                 let before = SystemState { time: from.time, multipliers: start.multipliers.clone(), ..from.clone() };
+                damped = self.damped(step, &before, &state)?;
                 self.restore_energy(step, &before, &mut state)?;
             }
             self.add_supports_in_motion(&state, &mut result)?;
             let (before, after, inertia) = (self.moving(&from), self.moving(&state), self.inertia(&state));
-            result.moved = Some(Moved { before, after, inertia });
+            result.moved = Some(Moved { before, after, inertia, damped });
             Ok((state, result))
         });
         if found.is_err() {
@@ -466,7 +469,7 @@ impl System {
     fn add_supports_in_motion(&self, state: &SystemState, result: &mut IncrementResult) -> Result<(), IncrementError> {
         let mut at = self.assemble(state, state.time, Order::First)?;
         let (_, count) = self.numbering();
-        self.add_momenta(&state.accelerations, 1.0, &mut at.residual[..count]);
+        self.add_momenta(&state.balancing, 1.0, &mut at.residual[..count]);
         result.support_forces = self.support_forces(&at, state);
         Ok(())
     }

@@ -15,8 +15,8 @@ pub struct Saved {
     pub time: f64,
     /// History and scales of each contact.
     pub contacts: Vec<[Vec<f64>; 2]>,
-    /// Velocities, accelerations, and what equilibrium lacks; none at rest.
-    pub motion: [Vec<f64>; 3],
+    /// Velocities, both accelerations, and what equilibrium lacks; none at rest.
+    pub motion: [Vec<f64>; 4],
 }
 
 impl System {
@@ -28,7 +28,7 @@ impl System {
             reactions: state.reactions.clone(),
             time: state.time,
             contacts: self.contacts.iter().map(|c| c.history()).collect(),
-            motion: [state.velocities.clone(), state.accelerations.clone(), state.forces.clone()],
+            motion: [&state.velocities, &state.accelerations, &state.balancing, &state.forces].map(Vec::clone),
         }
     }
 
@@ -48,7 +48,7 @@ impl System {
         let body = |[configuration, internal]: [Vec<f64>; 2]| BodyState { configuration, internal };
         state.bodies = saved.bodies.into_iter().map(body).collect();
         (state.multipliers, state.reactions, state.time) = (saved.multipliers, saved.reactions, saved.time);
-        [state.velocities, state.accelerations, state.forces] = saved.motion;
+        [state.velocities, state.accelerations, state.balancing, state.forces] = saved.motion;
         let before = self.histories();
         for (contact, history) in self.contacts.iter_mut().zip(&saved.contacts) {
             if contact.restore(history).is_err() {

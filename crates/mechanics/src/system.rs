@@ -168,8 +168,10 @@ pub struct SystemState {
     pub(crate) travel: Vec<f64>,
     /// Velocities of the unknowns of the bodies, angular velocities of spins; none before they move with inertia.
     pub velocities: Vec<f64>,
-    /// Their accelerations.
-    pub accelerations: Vec<f64>,
+    /// Accelerations by which the method in time goes on, and those that forces balance with, damping by mass included: the same
+    /// where nothing is damped (Arnold and Brüls 2007).
+    pub(crate) accelerations: Vec<f64>,
+    pub(crate) balancing: Vec<f64>,
     /// What equilibrium lacks where there is a mass.
     pub(crate) forces: Vec<f64>,
 }
@@ -177,7 +179,8 @@ pub struct SystemState {
 impl SystemState {
     /// Takes all motion out of the state.
     pub fn come_to_rest(&mut self) {
-        (self.velocities, self.accelerations, self.forces) = (Vec::new(), Vec::new(), Vec::new());
+        let of_motion = [&mut self.velocities, &mut self.accelerations, &mut self.balancing, &mut self.forces];
+        of_motion.into_iter().for_each(Vec::clear);
     }
 }
 
@@ -419,6 +422,7 @@ impl System {
             travel,
             velocities: at.velocities.clone(),
             accelerations: at.accelerations.clone(),
+            balancing: at.balancing.clone(),
             forces: at.forces.clone(),
         }
     }

@@ -41,12 +41,7 @@ impl Weights {
     /// Those of a spectral radius at high frequencies.
     pub fn of_radius(rho: f64) -> Self {
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
-        Weights {
-            alpha_m,
-            alpha_f,
-            beta: 0.25 * (1.0 - alpha_m + alpha_f).powi(2),
-            gamma: 0.5 - alpha_m + alpha_f,
-        }
+        Weights { alpha_m, alpha_f, beta: 0.25 * (1.0 - alpha_m + alpha_f).powi(2), gamma: 0.5 - alpha_m + alpha_f }
     }
 }
 
@@ -98,6 +93,7 @@ pub struct TimeStep {
     turning: Vec<Turning>,
     velocities: Vec<f64>,
     accelerations: Vec<f64>,
+    damping: [f64; 2],
 }
 
 impl System {
@@ -109,7 +105,11 @@ impl System {
             let Some(mass) = mass else { continue };
             for (unknowns, values) in &mass.blocks {
                 let diagonal = values.iter().step_by(unknowns.len() + 1);
-                unknowns.iter().zip(diagonal).filter(|(_, m)| **m > 0.0).for_each(|(u, _)| out[(first + u) as usize] = true);
+                unknowns
+                    .iter()
+                    .zip(diagonal)
+                    .filter(|(_, m)| **m > 0.0)
+                    .for_each(|(u, _)| out[(first + u) as usize] = true);
             }
             mass.spins.iter().flat_map(|s| s.unknowns).for_each(|u| out[(first + u) as usize] = true);
         }
@@ -181,6 +181,7 @@ impl System {
         single.iter().for_each(|h| forces[h.constraint.terms[0].0 as usize] = 0.0);
         let right: Vec<f64> = forces.iter().map(|f| -f).collect();
         state.accelerations = self.by_mass(&self.whole_masses()?, &right)?;
+        state.balancing.clone_from(&state.accelerations);
         self.keep_forces(state, forces);
         Ok(())
     }
@@ -259,19 +260,25 @@ impl System {
             turning,
             velocities: from.velocities.clone(),
             accelerations: from.accelerations.clone(),
+            damping: dynamics.damping,
         })
     }
 
     /// A state that ends an increment in time, with the velocities that it has then.
     pub(crate) fn end_time_step(&self, step: &TimeStep, state: &mut SystemState) -> Result<(), AssemblyError> {
-        let Weights { beta, gamma, .. } = step.weights;
+        let Weights { alpha_m, alpha_f, beta, gamma } = step.weights;
         let h = step.size;
         let u = &state.travel;
-        let acceleration = |k: usize| {
-            (u[k] - h * step.velocities[k]) / (beta * h * h) - (0.5 / beta - 1.0) * step.accelerations[k]
-        };
+        let acceleration =
+            |k: usize| (u[k] - h * step.velocities[k]) / (beta * h * h) - (0.5 / beta - 1.0) * step.accelerations[k];
         let accelerations: Vec<f64> = (0..u.len()).map(acceleration).collect();
-        let velocity = |k: usize| step.velocities[k] + h * ((1.0 - gamma) * step.accelerations[k] + gamma * accelerations[k]);
+        let balances = |k: usize| {
+            let weighted = alpha_m * step.accelerations[k] + (1.0 - alpha_m) * accelerations[k];
+            (weighted + step.damping[0] * u[k] / h - alpha_f * state.balancing[k]) / (1.0 - alpha_f)
+        };
+        let balancing: Vec<f64> = (0..u.len()).map(balances).collect();
+        let velocity =
+            |k: usize| step.velocities[k] + h * ((1.0 - gamma) * step.accelerations[k] + gamma * accelerations[k]);
         let mut velocities: Vec<f64> = (0..u.len()).map(velocity).collect();
         for turns in &step.turning {
             let (psi, _) = turns.turned(self, state);
@@ -282,13 +289,14 @@ impl System {
         for (k, _) in self.has_mass().iter().enumerate().filter(|(_, has)| !**has) {
             velocities[k] = u[k] / h;
         }
-        let [start, middle, end] = [state.time - h, state.time - 0.5 * h, state.time].map(|t| self.held(&state.bodies, t));
+        let [start, middle, end] =
+            [state.time - h, state.time - 0.5 * h, state.time].map(|t| self.held(&state.bodies, t));
         for ((a, b), c) in start?.0.iter().zip(&middle?.0).zip(&end?.0) {
             let (unknown, factor) = a.constraint.terms[0];
             let [a, b, c] = [a, b, c].map(|h| -h.constraint.violation / factor);
             velocities[unknown as usize] = (a - 4.0 * b + 3.0 * c) / h;
         }
-        (state.velocities, state.accelerations) = (velocities, accelerations);
+        (state.velocities, state.accelerations, state.balancing) = (velocities, accelerations, balancing);
         let forces = self.forces(state)?;
         self.keep_forces(state, forces);
         Ok(())
@@ -342,7 +350,8 @@ impl System {
         let mut forces = vec![0.0; count];
         for at in [start, &*state] {
             for (contact, own) in self.contacts.iter().zip(self.own(at)) {
-                let (mut residual, mut sizes) = (vec![0.0; count + at.multipliers.len()], vec![0.0; count + at.multipliers.len()]);
+                let (mut residual, mut sizes) =
+                    (vec![0.0; count + at.multipliers.len()], vec![0.0; count + at.multipliers.len()]);
                 let mut target = Assembler { residual: &mut residual, sizes: &mut sizes, tangent: None };
                 contact.add_to(self.bodies_in(at, &first), own, &mut target).map_err(AssemblyError::from)?;
                 forces.iter_mut().zip(&residual).for_each(|(f, r)| *f -= r);
@@ -381,6 +390,58 @@ impl System {
         Ok(())
     }
 
+    /// The energy that damping, and the weights of the method, took from displacements in an increment, before energy is given back: of
+    /// the equation times the displacements, all but the changes of the energies and the works of forces by their means.
+    pub(crate) fn damped(
+        &self,
+        step: &TimeStep,
+        start: &SystemState,
+        state: &SystemState,
+    ) -> Result<f64, IncrementError> {
+        let Weights { alpha_m, alpha_f, .. } = step.weights;
+        let u = &state.travel;
+        let product = |v: &[f64]| -> f64 {
+            let mut momenta = vec![0.0; v.len()];
+            self.add_momenta(v, 1.0, &mut momenta);
+            momenta.iter().zip(u).map(|(p, u)| p * u).sum()
+        };
+        let energy = |v: &[f64]| -> f64 {
+            let mut momenta = vec![0.0; v.len()];
+            self.add_momenta(v, 1.0, &mut momenta);
+            0.5 * momenta.iter().zip(v).map(|(p, v)| p * v).sum::<f64>()
+        };
+        let ends = step.accelerations.iter().zip(&state.accelerations);
+        let weighted: Vec<f64> = ends.map(|(a, b)| alpha_m * a + (1.0 - alpha_m) * b).collect();
+        let mut damped = product(&weighted) - (energy(&state.velocities) - energy(&step.velocities));
+        let uneven = 0.5 - alpha_f;
+        if uneven != 0.0 {
+            let change = state.forces.iter().zip(&start.forces).map(|(b, a)| b - a);
+            damped += uneven * change.zip(u).map(|(f, u)| f * u).sum::<f64>();
+            for k in 0..self.contacts.len() {
+                for (before, after) in self.sites(k, start)?.iter().zip(&self.sites(k, state)?) {
+                    if let (Some(from), Some(to)) = (before.gap, after.gap) {
+                        damped += uneven * (after.pressure - before.pressure) * after.weight * (to - from);
+                    }
+                }
+            }
+        }
+        let [by_mass, by_stiffness] = step.damping;
+        damped += by_mass / step.size * product(u);
+        if by_stiffness > 0.0 {
+            let (first, _) = self.numbering();
+            for (k, body) in self.bodies.iter().enumerate() {
+                let mut out = [Contribution::new(body.unknowns()), Contribution::new(body.unknowns())];
+                for (out, at) in out.iter_mut().zip([start, state]) {
+                    body.internal(&at.bodies[k], Order::First, out).map_err(AssemblyError::from)?;
+                }
+                let own = &u[first[k] as usize..first[k] as usize + body.unknowns()];
+                let change = out[1].forces.iter().zip(&out[0].forces).map(|(b, a)| b - a);
+                damped += by_stiffness / step.size * change.zip(own).map(|(f, u)| f * u).sum::<f64>();
+            }
+        }
+        Ok(damped)
+    }
+
     /// Kinetic energy and momenta of each body in a state; nothing of one at rest.
     pub fn moving(&self, state: &SystemState) -> Vec<Moving> {
         let (first, count) = self.numbering();
@@ -413,7 +474,7 @@ impl System {
     pub(crate) fn inertia(&self, state: &SystemState) -> Vec<(Vector<3>, Option<Vector<3>>)> {
         let (_, count) = self.numbering();
         let mut forces = vec![0.0; count];
-        self.add_momenta(&state.accelerations, -1.0, &mut forces);
+        self.add_momenta(&state.balancing, -1.0, &mut forces);
         let turns = |body: usize| self.masses.get(body).and_then(Option::as_ref).is_some_and(|m| !m.spins.is_empty());
         let all = self.resultants_of(state, &forces).into_iter().enumerate();
         all.map(|(body, [force, moment])| (force, (!turns(body)).then_some(moment))).collect()

@@ -14,12 +14,12 @@ use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
+use signorini_mechanics::SpinInertia;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Function, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack,
     SlavePoint,
 };
-use signorini_mechanics::SpinInertia;
 use std::collections::BTreeMap;
 
 /// Numbers of a node in a configuration, and unknowns.

@@ -79,7 +79,16 @@ impl Cable {
         let elements = (0..line.elements())
             .map(|e| Element::new(line.lengths[e], axial, bending, carries, &line.nodal(&start, e)))
             .collect();
-        Ok(Cable { name: name.to_string(), line, elements, radius, contact_points: 4, start, stiffness: axial, mass_per_length: None })
+        Ok(Cable {
+            name: name.to_string(),
+            line,
+            elements,
+            radius,
+            contact_points: 4,
+            start,
+            stiffness: axial,
+            mass_per_length: None,
+        })
     }
 
     /// Tests contact at so many points of Gauss of each element instead of four.

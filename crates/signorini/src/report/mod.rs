@@ -149,6 +149,9 @@ pub struct StepReport {
     /// Kinetic energy of all bodies. Null in equilibrium.
     #[serde(default)]
     pub kinetic_energy: Option<f64>,
+    /// Energy that damping took in the increment, that of the method in time included. Null in equilibrium.
+    #[serde(default)]
+    pub damping_dissipation: Option<f64>,
     /// Integral of the deflection of a membrane.
     pub volume: Option<f64>,
     /// Largest slope of the membrane. The theory is linear and valid for slopes much smaller than 1.

@@ -99,6 +99,7 @@ impl MechanicsModel {
         let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
         let mut lost: Option<Stability> = None;
         let mut moved: Option<Vec<Moving>> = None;
+        let mut damped = 0.0;
         let mut reason: Option<IncrementError> = None;
         loop {
             let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
@@ -123,6 +124,8 @@ impl MechanicsModel {
                     in_bodies.iter_mut().zip(&result.dissipated_in_bodies).for_each(|(sum, own)| *sum += own);
                     if let Some(own) = &mut result.moved {
                         own.before.clone_from(moved.get_or_insert_with(|| own.before.clone()));
+                        damped += own.damped;
+                        own.damped = damped;
                     }
                     // An increment that was cut tells of the first part that lost its stability.
                     if let Some(told) = &mut result.stability {

@@ -17,8 +17,8 @@ use signorini_rope::cable::element::Carries;
 use signorini_rope::centreline::{self, Closure};
 use signorini_rope::chain::Chain;
 use signorini_rope::chain::body::ReferenceLength;
-use signorini_rope::path::{Path, Sampled};
 use signorini_rope::mass::SectionMass;
+use signorini_rope::path::{Path, Sampled};
 use signorini_rope::section::{Section, Stiffness};
 
 const FORCE: [i32; 3] = [0, 1, 0];

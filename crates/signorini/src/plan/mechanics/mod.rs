@@ -129,7 +129,8 @@ impl MechanicsPlan {
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
     let deforms = |body: &Body| matches!(body, Body::Rope(_) | Body::Beam(_) | Body::Cells(_) | Body::Solid(_));
-    let is_free = |body: &Body| matches!(body, Body::Rigid(rigid) if matches!(rigid.motion, Some(problem::Motion::Free(_))));
+    let is_free =
+        |body: &Body| matches!(body, Body::Rigid(rigid) if matches!(rigid.motion, Some(problem::Motion::Free(_))));
     !bodies().any(|b| matches!(b, Body::Membrane(_))) && bodies().any(|b| deforms(b) || is_free(b))
 }
 

@@ -48,7 +48,8 @@ impl Planner<'_> {
 
     /// The mass per length of a rope, if it has one.
     pub(super) fn mass_per_length(&self, key: &Rope) -> Result<Option<f64>, CaseError> {
-        let mass = key.mass_per_length.as_ref().map(|value| self.reader.positive(value, MASS_PER_LENGTH)).transpose()?;
+        let mass =
+            key.mass_per_length.as_ref().map(|value| self.reader.positive(value, MASS_PER_LENGTH)).transpose()?;
         if let Some(winch) = key.winch.as_ref().filter(|_| self.moves()) {
             let message = "a rope whose length changes cannot move with inertia";
             return Err(self.problem.error(winch, message).help("move a support of the rope in place of the winch"));
@@ -87,7 +88,9 @@ impl Planner<'_> {
         for (k, body) in system.bodies.iter().enumerate() {
             let sides = touching(k);
             let sides: Vec<Option<&str>> = sides.iter().map(Option::as_deref).collect();
-            masses.push(body.mass(&sides).map_err(|e| self.unprepared(&signorini_mechanics::AssemblyError::from(e).into()))?);
+            masses.push(
+                body.mass(&sides).map_err(|e| self.unprepared(&signorini_mechanics::AssemblyError::from(e).into()))?,
+            );
         }
         system.masses = masses;
         self.check_masses(numbers, system)?;
@@ -110,8 +113,11 @@ impl Planner<'_> {
                 Body::Rope(_) => ("mass per length", "mass_per_length = \"0.1 kg/m\""),
                 Body::Rigid(_) => ("mass", "motion.free = { density = \"7800 kg/m^3\" }, or its `mass`"),
                 Body::Beam(beam) if matches!(beam.section, problem::Section::Stiffness(_)) => {
-                    let message = format!("`{name}` has no shape of its section, so it has no mass with which it could move");
-                    return Err(problem.error(body, message).help("section.circle or section.rectangle, with a material and a density"));
+                    let message =
+                        format!("`{name}` has no shape of its section, so it has no mass with which it could move");
+                    return Err(problem
+                        .error(body, message)
+                        .help("section.circle or section.rectangle, with a material and a density"));
                 }
                 _ => ("density", "density = \"7800 kg/m^3\""),
             };
@@ -145,7 +151,8 @@ impl Planner<'_> {
     fn dynamics(&self, step: Option<&problem::Step>, system: &System) -> Result<Option<Dynamics>, CaseError> {
         let problem = self.problem;
         let Some(key) = step.and_then(|s| s.dynamics.as_ref()) else { return Ok(None) };
-        if let Some(control) = step.and_then(|s| s.control.as_ref()).filter(|c| !matches!(c, problem::Control::Time(_))) {
+        if let Some(control) = step.and_then(|s| s.control.as_ref()).filter(|c| !matches!(c, problem::Control::Time(_)))
+        {
             return Err(problem
                 .error(control, "bodies that move with inertia move in time")
                 .help("leave out `control`, or `dynamics`"));
@@ -171,7 +178,9 @@ impl Planner<'_> {
                 let Some(value) = value else { return Ok(0.0) };
                 let found = self.reader.number(value, dimension)?;
                 if !(found >= 0.0 && found.is_finite()) {
-                    return Err(problem.error(value, format!("damping of {found} is not possible")).help("give 0 or more"));
+                    return Err(problem
+                        .error(value, format!("damping of {found} is not possible"))
+                        .help("give 0 or more"));
                 }
                 Ok(found)
             };

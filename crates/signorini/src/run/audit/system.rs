@@ -320,6 +320,16 @@ fn forces(
                 reacts: false,
             });
         }
+        let still = Vector::<3>::zeros();
+        out.push(Acting {
+            name: "damping".into(),
+            body: 0,
+            force: still,
+            moment: Some(still),
+            work: Some([-moved.damped, 0.0]),
+            drives: false,
+            reacts: false,
+        });
     }
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };

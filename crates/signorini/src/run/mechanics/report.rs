@@ -161,6 +161,7 @@ pub fn step_report(
         cells: means.collect(),
         free_bodies: poses.collect(),
         kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
+        damping_dissipation: result.moved.as_ref().map(|moved| moved.damped),
         motion,
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()

@@ -1,7 +1,7 @@
 //! Motion with inertia: what bodies weigh, and how an increment follows from velocities.
 
-use crate::body::PlaceError;
-use signorini_geometry::Matrix;
+use crate::body::{Body, BodyState, PlaceError};
+use signorini_geometry::{Matrix, Vector};
 
 /// The mass of a body in its unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +19,26 @@ pub struct SpinInertia {
     pub unknowns: [u32; 3],
     /// Moments of inertia about the axes of space as the body starts.
     pub inertia: Matrix<3>,
+}
+
+impl Mass {
+    /// Adds the momenta of velocities, times a factor: those of displacements only.
+    pub fn add_product(&self, velocities: &[f64], factor: f64, out: &mut [f64]) {
+        for (unknowns, values) in &self.blocks {
+            for (row, i) in values.chunks(unknowns.len()).zip(unknowns) {
+                let momentum: f64 = row.iter().zip(unknowns).map(|(m, j)| m * velocities[*j as usize]).sum();
+                out[*i as usize] += factor * momentum;
+            }
+        }
+    }
+
+    /// The force `-M a` of an acceleration of space, such as that of gravity, on the unknowns of a body, as a residual.
+    pub(crate) fn add_weight(&self, body: &dyn Body, state: &BodyState, acceleration: &Vector<3>, out: &mut [f64]) {
+        let modes = body.rigid_modes(state);
+        let along = |k: usize| (0..3).map(|i| acceleration[i] * modes[i][k]).sum();
+        let field: Vec<f64> = (0..out.len()).map(along).collect();
+        self.add_product(&field, -1.0, out);
+    }
 }
 
 /// How bodies move with inertia.
@@ -41,8 +61,33 @@ pub trait Inertial {
         Ok(None)
     }
 
+    /// The velocities of its unknowns with which it starts, where it knows them by itself; none where they are told otherwise.
+    fn initial_velocity(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// The rotation since the start of the section or body of which these are the spins ([`SpinInertia`]).
-    fn orientation(&self, _state: &crate::body::BodyState, _unknowns: [u32; 3]) -> Matrix<3> {
+    fn orientation(&self, _state: &BodyState, _unknowns: [u32; 3]) -> Matrix<3> {
         Matrix::<3>::identity()
     }
+}
+
+/// How the bodies moved in an increment, each by itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moved {
+    pub before: Vec<Moving>,
+    pub after: Vec<Moving>,
+    /// Resultant of `-M a` at the end, and its moment about the origin; none of bodies that turn.
+    pub inertia: Vec<(Vector<3>, Option<Vector<3>>)>,
+}
+
+/// What moves: kinetic energy and momenta of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moving {
+    /// In each direction of the space.
+    pub mass: f64,
+    pub kinetic_energy: f64,
+    pub momentum: Vector<3>,
+    /// About the origin.
+    pub angular_momentum: Vector<3>,
 }

@@ -4,6 +4,7 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::UnstableMaterial;
+use crate::dynamics::Moved;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -45,6 +46,8 @@ pub struct IncrementResult {
     pub is_indeterminate: bool,
     /// None of systems that cannot be unstable, or whose tangent is never factorised.
     pub stability: Option<Stability>,
+    /// How bodies moved; none of equilibria.
+    pub moved: Option<Moved>,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.

@@ -76,7 +76,7 @@ pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;
 pub use curve::Curve;
 pub use density::test_densely;
-pub use dynamics::{Dynamics, Inertial, Mass, SpinInertia};
+pub use dynamics::{Dynamics, Inertial, Mass, Moved, Moving, SpinInertia};
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
@@ -90,7 +90,7 @@ pub use points::{
     Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, NormalField, Order, RigidFoot,
     Sampling, SecondDerivative, Site, SlavePoint, Turning,
 };
-pub use rigid_body::{Motion, RigidBody, RigidSite};
+pub use rigid_body::{Motion, RigidBody, RigidMass, RigidSite};
 pub use saved::Saved;
 pub use shown_surface::{SharedSite, ShownSurface};
 pub use simpler::SimplerFriction;

@@ -89,6 +89,8 @@ pub enum TimedLoad {
     FollowerMoment(TimeVectorField),
     Tension(TimeField),
     Springs(Vector<3>),
+    /// Gravity: the acceleration by time, on the mass of the whole body.
+    Weight(Arc<dyn Fn(f64) -> Vector<3> + Send + Sync>, Arc<Mass>),
 }
 
 /// A load with its place.
@@ -121,6 +123,10 @@ impl PlacedLoad {
             TimedLoad::FollowerMoment(f) => act(&Load::FollowerMoment(f(&place, time))),
             TimedLoad::Tension(f) => act(&Load::Tension(f(&place, time))),
             TimedLoad::Springs(k) => act(&Load::Springs(*k)),
+            TimedLoad::Weight(acceleration, mass) => {
+                mass.add_weight(body, state, &acceleration(time), &mut out.forces);
+                Ok(())
+            }
         }
     }
 }

@@ -66,6 +66,7 @@ pub fn marks(plan: &MechanicsPlan) -> Vec<Mark> {
             TimedLoad::Force(f) | TimedLoad::NodalForce(f) => f(x, end),
             TimedLoad::Moment(f) | TimedLoad::FollowerMoment(f) => f(x, end),
             TimedLoad::Pressure(p) => outward.unwrap_or_default() * -p(x, end),
+            TimedLoad::Weight(acceleration, _) => acceleration(end),
             TimedLoad::Tension(_) | TimedLoad::Springs(_) => Vector::<3>::zeros(),
         };
         let forces = places.iter().map(force).collect();

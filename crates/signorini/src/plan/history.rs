@@ -29,9 +29,19 @@ pub struct ArcLengthIncrement {
     pub range: [f64; 2],
 }
 
+/// The increments of a system.
+pub(super) struct SystemIncrements {
+    /// Their ends as far as they are known before.
+    pub times: Vec<f64>,
+    /// Of those along a path of equilibria.
+    pub arc_lengths: Vec<Option<ArcLengthIncrement>>,
+    /// The step of each.
+    pub steps: Vec<usize>,
+}
+
 impl Planner<'_> {
-    /// The increments of a system: their ends as far as they are known before, and the lengths of those along a path.
-    pub(super) fn system_increments(&self) -> Result<(Vec<f64>, Vec<Option<ArcLengthIncrement>>), CaseError> {
+    /// The increments of a system.
+    pub(super) fn system_increments(&self) -> Result<SystemIncrements, CaseError> {
         for step in &self.problem.steps {
             if let Some(control @ problem::Control::Area(_)) = &step.control {
                 return Err(self.unavailable(control, "area control of solids"));
@@ -42,7 +52,11 @@ impl Planner<'_> {
             _ => None,
         };
         let planned = self.increments(0, &[])?;
-        Ok((planned.iter().map(|i| i.time).collect(), planned.iter().map(of).collect()))
+        Ok(SystemIncrements {
+            times: planned.iter().map(|i| i.time).collect(),
+            arc_lengths: planned.iter().map(of).collect(),
+            steps: planned.iter().map(|i| i.step).collect(),
+        })
     }
 
     /// The increments of a membrane of a dimension, whose contacts have names; of a system of the dimension 0.

@@ -88,6 +88,9 @@ pub struct UnitNames {
     pub energy: String,
     /// Unit of physical times.
     pub time: String,
+    /// Unit of velocities.
+    #[serde(default)]
+    pub velocity: String,
 }
 
 impl UnitNames {
@@ -103,6 +106,7 @@ impl UnitNames {
             moment: format!("{}·{}", units.written(units::FORCE), units.written(units::LENGTH)),
             energy: units.written(units::ENERGY),
             time: units.written(units::TIME),
+            velocity: units.written(units::VELOCITY),
         }
     }
 }
@@ -142,6 +146,9 @@ pub struct StepReport {
     pub plastic_dissipation: Option<f64>,
     /// `energy` minus the adhesion energy of the contact zones.
     pub energy_total: Option<f64>,
+    /// Kinetic energy of all bodies. Null in equilibrium.
+    #[serde(default)]
+    pub kinetic_energy: Option<f64>,
     /// Integral of the deflection of a membrane.
     pub volume: Option<f64>,
     /// Largest slope of the membrane. The theory is linear and valid for slopes much smaller than 1.
@@ -179,6 +186,9 @@ pub struct StepReport {
     /// Free rigid bodies, by their names.
     #[serde(default)]
     pub free_bodies: BTreeMap<String, Pose>,
+    /// How bodies with a mass move, by their names. Empty in equilibrium.
+    #[serde(default)]
+    pub motion: BTreeMap<String, MotionReport>,
 }
 
 /// Stability of an equilibrium: the second variation of the energy on the admissible motions.
@@ -241,6 +251,17 @@ pub struct CellsReport {
     /// Mean strains along the axes: relative displacement of opposite sides of the box, divided by their distance. Null
     /// if there is no material on one side.
     pub mean_strain: [Option<f64>; 3],
+}
+
+/// How a body moves with inertia.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MotionReport {
+    pub mass: f64,
+    pub kinetic_energy: f64,
+    /// Velocity of the centre of mass: the momentum over the mass.
+    pub velocity: [f64; 3],
+    /// Angular momentum about the origin.
+    pub angular_momentum: [f64; 3],
 }
 
 /// Displacement and rotation of a free rigid body.

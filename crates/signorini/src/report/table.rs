@@ -198,6 +198,9 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
     if steps.iter().any(|s| s.plastic_dissipation.is_some()) {
         add("plastic_dissipation".into(), unit(|u| &u.energy), &|s| s.plastic_dissipation);
     }
+    if steps.iter().any(|s| s.kinetic_energy.is_some()) {
+        add("kinetic_energy".into(), unit(|u| &u.energy), &|s| s.kinetic_energy);
+    }
     add("equilibrium_residual".into(), "", &|s| s.equilibrium_residual);
     const AXES: [&str; 3] = ["x", "y", "z"];
     for name in names(steps, |s| &s.contacts) {
@@ -264,6 +267,11 @@ pub fn history(steps: &[StepReport], units: Option<&UnitNames>) -> String {
         }
         for (k, axis) in AXES.iter().enumerate() {
             add(format!("{name}:rotation_{axis}"), "rad", &|s| Some(s.free_bodies.get(name)?.rotation[k]));
+        }
+    }
+    for name in names(steps, |s| &s.motion) {
+        for (k, axis) in AXES.iter().enumerate() {
+            add(format!("{name}:velocity_{axis}"), unit(|u| &u.velocity), &|s| Some(s.motion.get(name)?.velocity[k]));
         }
     }
     for name in names(steps, |s| &s.cells) {

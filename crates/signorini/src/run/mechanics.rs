@@ -300,6 +300,7 @@ impl Model for MechanicsModel {
         progress: &mut dyn Progress,
     ) -> Result<Advanced, CaseError> {
         let before = if index == 0 { 0.0 } else { self.state.time };
+        self.plan.system.dynamics = self.plan.motion.dynamics.get(index).copied().flatten();
         let found = match self.plan.arc_lengths[index] {
             Some(planned) => match self.follow(index, planned, progress)? {
                 Some(found) => found,

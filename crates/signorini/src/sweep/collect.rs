@@ -27,7 +27,7 @@ const KEYS: [&str; 14] = [
 ];
 
 /// What is collected if nothing else is wanted.
-const MAIN: [&str; 32] = [
+const MAIN: [&str; 34] = [
     "contacts.*.force",
     "contacts.*.force_size",
     "contacts.*.normal_force",
@@ -54,6 +54,8 @@ const MAIN: [&str; 32] = [
     "curves.*.end_tension",
     "curves.*.max_tension",
     "free_bodies",
+    "kinetic_energy",
+    "motion",
     "cells",
     "paths.*.frames.-1.length",
     "paths.*.frames.-1.tension_limits",

@@ -7,6 +7,7 @@ mod curves;
 mod fields;
 mod images;
 mod mortar;
+mod motion;
 mod places;
 mod rigid;
 mod solids;
@@ -14,14 +15,15 @@ mod tie;
 mod winches;
 
 pub use fields::Wrong;
+pub use motion::{GRAVITY, Motion};
 
 use super::head::Head;
-use super::history::ArcLengthIncrement;
+use super::history::{ArcLengthIncrement, SystemIncrements};
 use super::memory::check_memory;
 use super::pieces::{Pieces, UNITE};
 use super::planner::Planner;
 use crate::problem::units::{LENGTH, Units};
-use crate::problem::{self, Body, CaseError, Motion, Problem, Space, UnstableStates};
+use crate::problem::{self, Body, CaseError, Problem, Space, UnstableStates};
 use crate::report::{TractionKind, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
@@ -103,6 +105,8 @@ pub struct MechanicsPlan {
     pub times: Vec<f64>,
     /// Of each increment, if it is along a path.
     pub arc_lengths: Vec<Option<ArcLengthIncrement>>,
+    /// How bodies move with inertia.
+    pub motion: Motion,
     pub probes: BTreeMap<String, Point<3>>,
     /// The point about which moments are told.
     pub moments_about: Point<3>,
@@ -125,7 +129,8 @@ impl MechanicsPlan {
 pub fn is_system(problem: &Problem) -> bool {
     let bodies = || problem.bodies.values();
     let deforms = |body: &Body| matches!(body, Body::Rope(_) | Body::Beam(_) | Body::Cells(_) | Body::Solid(_));
-    let is_free = |body: &Body| matches!(body, Body::Rigid(rigid) if matches!(rigid.motion, Some(Motion::Free(_))));
+    let is_free =
+        |body: &Body| matches!(body, Body::Rigid(rigid) if matches!(rigid.motion, Some(problem::Motion::Free(_))));
     !bodies().any(|b| matches!(b, Body::Membrane(_))) && bodies().any(|b| deforms(b) || is_free(b))
 }
 
@@ -224,10 +229,14 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
+        let SystemIncrements { times, arc_lengths, steps } = self.system_increments()?;
+        let motion = self.motion(&mut system, &steps, &wrong)?;
         system.prepare().map_err(|e| self.unprepared(&e))?;
-        self.check_pieces(&pieces, &system)?;
-        self.check_held(&system)?;
-        let (times, arc_lengths) = self.system_increments()?;
+        // Inertia holds what nothing else does.
+        if motion.dynamics.first().is_none_or(Option::is_none) {
+            self.check_pieces(&pieces, &system)?;
+            self.check_held(&system)?;
+        }
         if arc_lengths.iter().any(Option::is_some) {
             system.unstable = Unstable::Tell;
         }
@@ -268,6 +277,7 @@ impl Planner<'_> {
             kinds,
             times,
             arc_lengths,
+            motion,
             probes,
             moments_about: match &problem.output.moments_about {
                 Some(at) => self.position(at, LENGTH)?,

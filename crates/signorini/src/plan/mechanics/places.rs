@@ -420,6 +420,8 @@ impl Planner<'_> {
                 TimedLoad::FollowerMoment(_) => Load::FollowerMoment(Vector::<3>::zeros()),
                 TimedLoad::Tension(_) => Load::Tension(0.0),
                 TimedLoad::Springs(k) => Load::Springs(*k),
+                // It acts on any body with a mass.
+                TimedLoad::Weight(..) => return Ok(()),
             };
             body.load(part.group.as_deref(), &what, &body.start(), Order::First, &mut out)
                 .map_err(|error| self.misplaced(on, &error))

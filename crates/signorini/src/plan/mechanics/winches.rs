@@ -75,7 +75,7 @@ impl Planner<'_> {
         let field = self.field(&key.length, LENGTH, wrong)?;
         let zero = Point::<3>::zeros();
         let (mut most, mut least, mut before) = (0.0f64, 0.0f64, 0.0);
-        for time in self.system_increments()?.0 {
+        for time in self.system_increments()?.times {
             for k in 1..=BETWEEN {
                 let out = field(&zero, before + (time - before) * k as f64 / BETWEEN as f64);
                 (most, least) = (most.max(out), least.min(out));

@@ -2,10 +2,10 @@
 
 use crate::output::figure::{told, told_vector};
 use crate::output::system::{CurveShown, SystemShown, frames};
-use crate::plan::mechanics::{AXIS_SUPPORT, ContactInfo, Kind, MechanicsPlan};
+use crate::plan::mechanics::{AXIS_SUPPORT, ContactInfo, GRAVITY, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    CellsReport, Component, ContactReport, CurveReport, MotionReport, Pose, Probe, Reason, RopeLimits, SectionReport,
     StabilityReport, StepReport, TractionKind, UnitNames, vector,
 };
 use crate::run::contact_verdict::{contact_verdict, sticking};
@@ -67,7 +67,7 @@ pub fn step_report(
         *support_moments.entry(support.name.clone()).or_insert_with(Vector::<3>::zeros) += moment;
     }
     let mut load_moments: BTreeMap<String, [f64; 3]> = BTreeMap::new();
-    let is_spring = |name: &str| !plan.head.problem.loads.contains_key(name);
+    let is_spring = |name: &str| name != GRAVITY && !plan.head.problem.loads.contains_key(name);
     let mut loads: BTreeMap<String, [f64; 3]> = BTreeMap::new();
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, shown.time) else { continue };
@@ -77,8 +77,13 @@ pub fn step_report(
             *supports.entry(load.name.clone()).or_insert_with(Vector::<3>::zeros) += force;
             *support_moments.entry(load.name.clone()).or_insert_with(Vector::<3>::zeros) += moment;
         } else {
-            loads.insert(load.name.clone(), vector(&force));
-            load_moments.insert(load.name.clone(), vector(&moment));
+            // Gravity acts on several bodies.
+            let add = |sums: &mut BTreeMap<String, [f64; 3]>, v: &Vector<3>| {
+                let sum = sums.entry(load.name.clone()).or_default();
+                (0..3).for_each(|i| sum[i] += v[i]);
+            };
+            add(&mut loads, &force);
+            add(&mut load_moments, &moment);
         }
     }
     let probe = |x: &Vector<3>| {
@@ -109,6 +114,19 @@ pub fn step_report(
         let own = body.means(state)?;
         Some((body.name().to_string(), CellsReport { mean_stress: own.stress, mean_strain: own.strain }))
     });
+    let moved = result.moved.iter().flat_map(|moved| system.bodies.iter().zip(&moved.after));
+    let motion: BTreeMap<String, MotionReport> = moved
+        .filter(|(_, own)| own.mass > 0.0)
+        .map(|(body, own)| {
+            let report = MotionReport {
+                mass: own.mass,
+                kinetic_energy: own.kinetic_energy,
+                velocity: vector(&(own.momentum / own.mass)),
+                angular_momentum: vector(&own.angular_momentum),
+            };
+            (body.name().to_string(), report)
+        })
+        .collect();
     StepReport {
         index,
         time: shown.time,
@@ -142,6 +160,8 @@ pub fn step_report(
         curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(c))).collect(),
         cells: means.collect(),
         free_bodies: poses.collect(),
+        kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
+        motion,
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
     }
@@ -354,6 +374,10 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         let turned =
             if turned > 0.0 { format!(" and rotated by {}", told(turned, None, "rad")) } else { String::new() };
         list.push(format!("`{name}` moved by {moved}{turned}"));
+    }
+    for (name, motion) in &step.motion {
+        let velocity = told_vector(&motion.velocity[..space], None, unit(|u| &u.velocity));
+        list.push(format!("`{name}` moves with {velocity}"));
     }
     let balance = step.equilibrium_residual.unwrap_or(f64::NAN);
     if list.is_empty() {

@@ -38,6 +38,7 @@ fn run(degree: usize, n: usize) {
         centre: V::zeros(),
         sites: Vec::new(),
         size: 1.0,
+        mass: None,
     };
     let mut system = System { bodies: vec![Box::new(ball), Box::new(plane)], ..System::default() };
     let part = |group: &str| Part { body: 0, group: Some(group.into()) };

@@ -11,6 +11,7 @@
 //! - [`closest`]: closest points of any two of them, certified.
 //! - [`frame`]: metric, curvature and frames of curves and surfaces.
 //! - [`measures`]: gap and coordinates of a contact pair with their first and second variations.
+//! - [`mass_properties`]: volume, centre of mass and moments of inertia.
 //! - [`body`]: bodies of many shapes, and the closest pair between two.
 //! - [`existence`]: where projections exist and are unique.
 //! - [`mesh`]: triangle meshes; [`bvh`]: the search tree under them.
@@ -35,6 +36,7 @@ pub mod height_field;
 pub mod implicit;
 pub mod implicit_surface;
 pub mod jet;
+pub mod mass_properties;
 pub mod measures;
 pub mod mesh;
 pub mod outline;

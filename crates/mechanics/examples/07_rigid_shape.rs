@@ -51,6 +51,7 @@ pub fn main() {
         motion: at_rest,
         sites: Vec::new(),
         size: BOWL,
+        mass: None,
     };
     let centre = V::new(0.0, 0.0, -1.0);
     let ball = RigidBody {
@@ -60,6 +61,7 @@ pub fn main() {
         centre,
         sites: vec![RigidSite { x: centre, outward: None, radius: BALL, weight: 1.0 }],
         size: BALL,
+        mass: None,
     };
     let mut system = System { bodies: vec![Box::new(ball), Box::new(bowl)], ..System::default() };
 

@@ -140,6 +140,7 @@ pub fn main() {
         centre: V::zeros(),
         sites: Vec::new(),
         size: 1.0,
+        mass: None,
     };
     let (load, stiffness) = (V::new(0.0, 0.0, -5.0), point.stiffness);
     let mut system = System { bodies: vec![Box::new(point), Box::new(plane)], ..System::default() };

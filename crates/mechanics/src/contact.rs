@@ -51,6 +51,8 @@ pub struct Contact {
     pub sampling: Sampling,
     pub law: ContactLaw,
     pub axis: AxisChoice,
+    /// Velocity of opening after an impact of rigid bodies relative to that of closing before it (Newton), from 0 to 1.
+    pub restitution: f64,
     /// How far apart, or inside each other, points are looked at.
     pub reach: f64,
     /// Where they are looked for.
@@ -130,6 +132,7 @@ impl Contact {
             sampling,
             law: ContactLaw::new(enforcement, stiffness, sites.iter().map(|s| s.weight).collect()),
             axis: AxisChoice::Material,
+            restitution: 0.0,
             reach,
             pairing: Pairing::Now,
             partners: Partners::new(),

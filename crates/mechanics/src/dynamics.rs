@@ -61,6 +61,11 @@ pub trait Inertial {
         Ok(None)
     }
 
+    /// The velocities of its unknowns with which it starts, where it knows them by itself; none where they are told otherwise.
+    fn initial_velocity(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// The rotation since the start of the section or body of which these are the spins ([`SpinInertia`]).
     fn orientation(&self, _state: &BodyState, _unknowns: [u32; 3]) -> Matrix<3> {
         Matrix::<3>::identity()

@@ -91,7 +91,7 @@ pub use points::{
     Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, NormalField, Order, RigidFoot,
     Sampling, SecondDerivative, Site, SlavePoint, Turning,
 };
-pub use rigid_body::{Motion, RigidBody, RigidSite};
+pub use rigid_body::{Motion, RigidBody, RigidMass, RigidSite};
 pub use saved::Saved;
 pub use shown_surface::{SharedSite, ShownSurface};
 pub use simpler::SimplerFriction;

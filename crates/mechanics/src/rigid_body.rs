@@ -8,7 +8,7 @@ use crate::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
     Elimination, Hold, Kinematics, Load, PlaceError, Slack,
 };
-use crate::dynamics::Inertial;
+use crate::dynamics::{Inertial, Mass, SpinInertia};
 use crate::pair::{any_tangent, axis};
 use crate::points::{
     Anchor, Function, Master, MasterProjection, MaterialPoint, Order, RigidFoot, Sampling, SecondDerivative, Site,
@@ -46,6 +46,17 @@ pub struct RigidSite {
     pub weight: f64,
 }
 
+/// What a free body resists to acceleration, and how fast it starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMass {
+    pub mass: f64,
+    /// Moments of inertia about the centre, which is the centre of mass, along the axes of space as the body starts.
+    pub inertia: Matrix<3>,
+    /// Velocity of the centre, and angular velocity, at the start.
+    pub velocity: Vector<3>,
+    pub angular_velocity: Vector<3>,
+}
+
 /// A rigid body.
 #[derive(Clone)]
 pub struct RigidBody {
@@ -57,6 +68,8 @@ pub struct RigidBody {
     /// Its points that are tested for contact; none for a body that is only ever touched by others.
     pub sites: Vec<RigidSite>,
     pub size: f64,
+    /// None of a body that only rests.
+    pub mass: Option<RigidMass>,
 }
 
 /// Position and rotation of a rigid body.
@@ -351,7 +364,37 @@ impl Kinematics for RigidBody {
     }
 }
 
-impl Inertial for RigidBody {}
+impl Inertial for RigidBody {
+    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
+        let Some(own) = &self.mass else { return Ok(None) };
+        let moves = self.components().filter(|(c, _)| *c < 3);
+        let mut blocks: Vec<_> = moves.map(|(_, unknown)| (vec![unknown], vec![own.mass])).collect();
+        let mut spins = Vec::new();
+        match self.motion {
+            Motion::Free { plane: false } => {
+                spins.push(SpinInertia { unknowns: [3, 4, 5], inertia: own.inertia });
+            }
+            // About one axis a rotation is a number like a displacement.
+            Motion::Free { plane: true } => blocks.push((vec![2], vec![own.inertia[(2, 2)]])),
+            Motion::FreeAlongAxis | Motion::Prescribed(_) => {}
+        }
+        Ok(Some(Mass { blocks, spins }))
+    }
+
+    fn orientation(&self, state: &BodyState, _: [u32; 3]) -> Matrix<3> {
+        Pose::of(state).matrix()
+    }
+
+    fn initial_velocity(&self) -> Vec<f64> {
+        let mut out = vec![0.0; self.unknowns()];
+        if let Some(own) = &self.mass {
+            for (c, unknown) in self.components() {
+                out[unknown as usize] = if c < 3 { own.velocity[c] } else { own.angular_velocity[c - 3] };
+            }
+        }
+        out
+    }
+}
 
 impl Elimination for RigidBody {}
 

@@ -81,6 +81,7 @@ fn wrapped(elements: usize, is_smooth: bool) {
         centre: V::zeros(),
         sites: Vec::new(),
         size: 1.0,
+        mass: None,
     };
     let mut system = System { bodies: vec![rope, Box::new(drum)], ..System::default() };
     system.supports.push(held("start", [true; 3], false));

@@ -64,6 +64,7 @@ fn pushed(depth: f64) -> [f64; 2] {
         centre: V::zeros(),
         sites: Vec::new(),
         size: 1.0,
+        mass: None,
     };
     let bodies: Vec<Box<dyn Body>> = vec![Box::new(cube), Box::new(plane)];
 

@@ -3,6 +3,7 @@
 use super::height::{circle, rising, squared_distance};
 use super::{ClosestPoints, GapJet, NoHeight, Normals, RigidShape, curvature};
 use crate::height_field::{HeightField, View};
+use crate::mass_properties::MassProperties;
 use crate::shape::{Axes, ShapeError, Surface};
 use crate::{Aabb, Jet, Matrix, Point, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -48,6 +49,10 @@ impl RigidShape for Ellipsoid {
     fn bounds(&self) -> Option<Aabb<3>> {
         let half = Vector::<3>::from(self.semi_axes);
         Some(Aabb::new(self.center - half, self.center + half))
+    }
+
+    fn mass_properties(&self) -> Option<MassProperties> {
+        Some(MassProperties::ellipsoid(self.center, self.semi_axes))
     }
 
     fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

@@ -45,6 +45,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 
 use crate::height_field::{HeightField, View};
+use crate::mass_properties::MassProperties;
 use crate::{Aabb, Jet, Point, Vector};
 use std::sync::Arc;
 
@@ -72,6 +73,11 @@ pub trait RigidShape: Send + Sync {
 
     /// The box of the shape, where it has an end everywhere and a closed form tells it.
     fn bounds(&self) -> Option<Aabb<3>> {
+        None
+    }
+
+    /// Volume, centre of mass and moments of inertia of the body in space; none of one without an end, or that has no closed form.
+    fn mass_properties(&self) -> Option<MassProperties> {
         None
     }
 

@@ -5,13 +5,18 @@
 //! axis `H = n·e_ρ/ρ`. Beyond its ends the profile goes on straight.
 
 use super::{GapJet, RigidShape, any_normal, curvature, unit};
+use crate::mass_properties::MassProperties;
+use crate::rule::gauss_legendre;
 use crate::shape::ShapeError;
 use crate::{Jet, Point, Vector};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Places per interval at which the search for the closest point of a profile starts.
 const STARTS: usize = 8;
 const ITERATIONS: usize = 30;
+/// Radius at an end of a profile, relative to the largest, that is rounding.
+const CLOSED: f64 = 1e-9;
 
 type Formula = dyn Fn(Jet<1>) -> [Jet<1>; 2] + Send + Sync;
 
@@ -285,6 +290,31 @@ impl RigidShape for Revolution {
 
     fn centre(&self) -> Point<3> {
         self.origin
+    }
+
+    /// Exact for a spline; none where an end of the profile is not on the axis.
+    fn mass_properties(&self) -> Option<MassProperties> {
+        let ends = self.profile.range().map(|t| self.profile.jet(t).x[0]);
+        // Along the axis, of each disc: volume, and moments about the axis, about a diameter and from z = 0.
+        let mut sums = [0.0; 4];
+        let mut widest = 0.0f64;
+        for part in self.profile.breaks.windows(2) {
+            for (xi, weight) in gauss_legendre(8) {
+                let jet = self.profile.jet(part[0] + xi * (part[1] - part[0]));
+                let [rho, z] = [jet.x[0], jet.x[1]];
+                let slice = PI * rho * rho * jet.d1[1] * weight * (part[1] - part[0]);
+                widest = widest.max(rho);
+                let own = [slice, slice * z, 0.5 * slice * rho * rho, slice * (0.25 * rho * rho + z * z)];
+                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            }
+        }
+        if ends.iter().any(|rho| *rho > CLOSED * widest) {
+            return None;
+        }
+        let [volume, first, about, across] = sums.map(|sum| sum * sums[0].signum());
+        let z = first / volume;
+        let inertia = MassProperties::round(&self.axis, about, across - z * z * volume);
+        Some(MassProperties { volume, centre: self.origin + self.axis * z, inertia })
     }
 }
 

@@ -3,6 +3,7 @@
 use super::height::{circle, rising, squared_distance};
 use super::{GapJet, NoHeight, RigidShape};
 use crate::height_field::{HeightField, View};
+use crate::mass_properties::MassProperties;
 use crate::{Aabb, Point, Vector};
 use std::sync::Arc;
 
@@ -25,6 +26,10 @@ impl RigidShape for Sphere {
     fn bounds(&self) -> Option<Aabb<3>> {
         let half = Vector::<3>::repeat(self.radius);
         Some(Aabb::new(self.center - half, self.center + half))
+    }
+
+    fn mass_properties(&self) -> Option<MassProperties> {
+        Some(MassProperties::ball(self.center, self.radius))
     }
 
     fn height(&self, view: View, _: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

@@ -3,6 +3,7 @@
 use super::height::{circle, is_upright, rising, sqrt, squared_distance};
 use super::{GapJet, NoHeight, RigidShape, any_normal, curvature, directions_around, unit};
 use crate::height_field::{HeightField, View};
+use crate::mass_properties::MassProperties;
 use crate::{Aabb, Jet, Matrix, Point, Real, Vector};
 use std::sync::Arc;
 
@@ -78,6 +79,10 @@ impl RigidShape for Torus {
     fn bounds(&self) -> Option<Aabb<3>> {
         let half = Vector::<3>::repeat(self.major + self.minor);
         Some(Aabb::new(self.center - half, self.center + half))
+    }
+
+    fn mass_properties(&self) -> Option<MassProperties> {
+        Some(MassProperties::ring(self.center, &self.axis, [self.major, self.minor]))
     }
 
     fn height(&self, view: View, rounding: f64) -> Result<Arc<dyn HeightField>, NoHeight> {

@@ -5,12 +5,14 @@
 //! - `rest`: whether bodies may rest where they are;
 //! - `motion`: implicit steps of an overdamped motion in pseudo-time;
 //! - `stability`: whether the state that they lead to is stable;
-//! - `increment`: from one state of rest to the next; `results`: what is told of it.
+//! - `increment`: from one state of rest to the next; `results`: what is told of it;
+//! - `dynamics`: motion with inertia.
 //!
 //! What can rest where it is rests. Else bodies move, prescribed motions bit by bit, until they rest. No elastic body gives
 //! a scale here, and none is needed: sizes and loads do.
 
 mod complementarity;
+mod dynamics;
 mod increment;
 mod motion;
 mod rest;
@@ -47,6 +49,9 @@ impl System {
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        if self.dynamics.is_some() {
+            return self.solve_rigid_in_time(from, time, report);
+        }
         let motion = Motion::new(self, from, time)?;
         let mut run = Increment::new(&motion, report);
         let (mut state, found) = run.solve(from, time)?;

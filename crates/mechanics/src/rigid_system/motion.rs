@@ -29,7 +29,7 @@ pub const FIRST: f64 = 0.1;
 pub const LONGEST: f64 = 1e6;
 pub const SHORTEST: f64 = 1e-7;
 /// Gap, relative to the size of the largest free body, with which points touch.
-const TOUCHES: f64 = 1e-11;
+pub const TOUCHES: f64 = 1e-11;
 /// Gap, relative to that size, from which a point is looked at before it is needed.
 const NEAR: f64 = 1e-3;
 /// Change of a step, relative to the sizes, that ends its iterations, or relative to the step itself: the next one mends that;

@@ -146,7 +146,12 @@ impl<'a> Motion<'a> {
     }
 
     /// The points of a contact; those that touch in several places are told once for each that carries.
-    fn sites(&self, contact: usize, state: &SystemState, (found, so_far): (&Stepped<'_>, &SoFar)) -> Vec<SiteResult> {
+    pub(super) fn sites(
+        &self,
+        contact: usize,
+        state: &SystemState,
+        (found, so_far): (&Stepped<'_>, &SoFar),
+    ) -> Vec<SiteResult> {
         let still: Twists = vec![None; state.bodies.len()];
         let only = [self.contacts[contact]];
         let nearest = touching(&only, self.bodies_of(&state.bodies), &still, Order::First, &|id, _| id.place == 0);

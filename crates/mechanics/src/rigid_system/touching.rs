@@ -32,8 +32,9 @@ pub struct Touching<'a> {
     pub axes: [Vector<3>; 2],
     /// Whether anything slips along each axis: in the plane nothing moves across it.
     pub moves: [bool; 2],
-    /// Slip per step of the motions that are prescribed.
+    /// Slip per step of the motions that are prescribed, and what they open the gap by.
     pub driven: Vector<3>,
+    pub driven_gap: f64,
 }
 
 impl Touching<'_> {
@@ -141,13 +142,14 @@ pub fn touching<'a>(
                     None => Vector::<3>::zeros(),
                 };
                 let driven = velocity(contact.slave.body) - velocity(contact.master.body);
-                let driven = driven - pair.normal * pair.normal.dot(&driven);
+                let driven_gap = pair.normal.dot(&driven);
+                let driven = driven - pair.normal * driven_gap;
                 let axes = if friction { axes(&pair).0 } else { [Vector::<3>::zeros(); 2] };
                 let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
                 let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
                 let law = contact.law.friction.as_deref();
                 let weight = site.weight;
-                out.push(Touching { id, law, weight, centre: placed.x, x, pair, axes, moves, driven });
+                out.push(Touching { id, law, weight, centre: placed.x, x, pair, axes, moves, driven, driven_gap });
             }
         }
     }

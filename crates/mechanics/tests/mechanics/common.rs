@@ -17,7 +17,7 @@ pub fn at_rest() -> Motion {
 
 pub fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion, sites: Vec<RigidSite>) -> RigidBody {
     let centre = shape.centre();
-    RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites, size: 1.0 }
+    RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites, size: 1.0, mass: None }
 }
 
 pub fn plane(point: Point<3>, normal: Vector<3>) -> RigidBody {

@@ -8,7 +8,15 @@ use signorini_geometry::rigid_shape::{Plane, RigidShape, Sphere};
 
 pub(super) fn rigid(name: &str, shape: impl RigidShape + 'static, motion: Motion) -> RigidBody {
     let centre = shape.centre();
-    RigidBody { name: name.to_string(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
+    RigidBody {
+        name: name.to_string(),
+        shape: Arc::new(shape),
+        motion,
+        centre,
+        sites: Vec::new(),
+        size: 1.0,
+        mass: None,
+    }
 }
 
 pub(super) fn moved(along: Vector<3>) -> Motion {

@@ -140,7 +140,8 @@ impl<const D: usize> Case<D> {
             let zero = Vector::<3>::zeros();
             let motion = Motion::Prescribed(Arc::new(move |_| RigidMotion::new(zero, zero, zero)));
             let (shape, centre) = (Arc::clone(shape), shape.centre());
-            let rigid = RigidBody { name: "rigid".into(), shape, motion, centre, sites: Vec::new(), size: 1.0 };
+            let rigid =
+                RigidBody { name: "rigid".into(), shape, motion, centre, sites: Vec::new(), size: 1.0, mass: None };
             let other = Part { body: 1, group: None };
             let sides = ((on.clone(), &solid as &dyn Body), (other, &rigid as &dyn Body));
             contacts.push(Box::new(Contact::new("touch", sides.0, sides.1, *sampling, *enforcement).unwrap()));

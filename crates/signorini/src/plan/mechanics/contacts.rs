@@ -156,6 +156,7 @@ impl Planner<'_> {
             contact.axis = self.axis_choice(coulomb)?;
         }
         contact.law.friction = self.interface(key)?;
+        contact.restitution = self.restitution(key)?;
         // What of a body of small strains faces another part of it turns little within an increment.
         let keeps = contact.law.friction.is_none() || matches!(kind, Kind::Cells);
         if slave.body == master.body && body(&slave).is_linear() && keeps {
@@ -172,6 +173,17 @@ impl Planner<'_> {
         let at_nodes = matches!(kind, Kind::Cells) && sampling == Sampling::Nodes;
         let tested = ContactInfo { along_a_curve, carries, at_nodes, ..ContactInfo::by(method, contact.axis) };
         Ok((Box::new(contact), tested))
+    }
+
+    /// The coefficient of restitution of a contact.
+    fn restitution(&self, key: &problem::Contact) -> Result<f64, CaseError> {
+        match &key.restitution {
+            Some(e) if !(0.0..=1.0).contains(e) => Err(self
+                .problem
+                .error(e, format!("a coefficient of restitution of {e} is not between 0 and 1"))
+                .help("0 where bodies that strike do not rebound, 1 where they rebound without loss of energy")),
+            stated => Ok(stated.unwrap_or(0.0)),
+        }
     }
 
     /// Contact between two curves, or of one with itself, where no other method is stated.

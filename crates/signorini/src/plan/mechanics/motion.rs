@@ -219,10 +219,18 @@ impl Planner<'_> {
             }
             momenta.extend(out.forces);
         }
-        if momenta.iter().all(|p| *p == 0.0) {
-            return Ok(momenta);
+        let mut out = if momenta.iter().all(|p| *p == 0.0) {
+            momenta
+        } else {
+            system.velocities_of(&momenta).map_err(|e| self.unprepared(&e.into()))?
+        };
+        // Rigid bodies know their velocities.
+        let mut first = 0;
+        for body in &system.bodies {
+            out[first..].iter_mut().zip(body.initial_velocity()).for_each(|(v, own)| *v = own);
+            first += body.unknowns();
         }
-        system.velocities_of(&momenta).map_err(|e| self.unprepared(&e.into()))
+        Ok(out)
     }
 
     /// Says of keys of motion that nothing moves.

@@ -3,15 +3,25 @@
 use super::{Kind, Wrong};
 use crate::plan::planner::Planner;
 use crate::plan::rigid as beside;
-use crate::problem::units::LENGTH;
-use crate::problem::{CaseError, Motion as Stated, Rigid, Shape, Side, Space};
+use crate::problem::units::{DENSITY, FREQUENCY, INERTIA, LENGTH, MASS, VELOCITY};
+use crate::problem::{CaseError, Components, FreeMotion, KeyPath, Motion as Stated, Rigid, Shape, Side, Space};
+use signorini_geometry::mass_properties::MassProperties;
 use signorini_geometry::mesh::TriangleMesh;
-use signorini_geometry::{Aabb, Point, Vector};
-use signorini_mechanics::{Motion, RigidBody, RigidSite};
+use signorini_geometry::rigid_shape::RigidShape;
+use signorini_geometry::{Aabb, Matrix, Point, Vector};
+use signorini_mechanics::{Motion, RigidBody, RigidMass, RigidSite};
 use std::sync::Arc;
 
 /// What is around no body at all.
 const NOWHERE: f64 = 1.0;
+/// Distance of centres relative to the size of a body that is none.
+const SAME_PLACE: f64 = 1e-9;
+
+/// The mass of a body, with its centre.
+struct Found {
+    own: RigidMass,
+    centre: Point<3>,
+}
 
 impl Planner<'_> {
     /// A rigid body, and what it is for results. `around` are the corners of the box of the deformable bodies.
@@ -51,8 +61,152 @@ impl Planner<'_> {
             }
         };
         let (sites, size) = self.points_of(key, low, high)?;
-        let body = RigidBody { name: name.to_string(), shape: Arc::clone(&shape), motion, centre, sites, size };
+        let mut mass = None;
+        if let Some(Stated::Free(free)) = &key.motion
+            && let Some(found) = self.mass_of(name, key, free, shape.as_ref(), centre)?
+        {
+            centre = found.centre;
+            mass = Some(found.own);
+        }
+        let body = RigidBody { name: name.to_string(), shape: Arc::clone(&shape), motion, centre, sites, size, mass };
         Ok((body, Kind::Rigid { shape, centre, is_free }))
+    }
+
+    /// Mass, moments of inertia and velocities of a free body; none of one without density and mass.
+    fn mass_of(
+        &self,
+        name: &str,
+        key: &Rigid,
+        free: &FreeMotion,
+        shape: &dyn RigidShape,
+        place: Point<3>,
+    ) -> Result<Option<Found>, CaseError> {
+        let problem = self.problem;
+        let (velocity, angular_velocity) = self.velocities_of(free)?;
+        if let (Some(_), Some(mass)) = (&free.density, &free.mass) {
+            return Err(problem
+                .error(mass, format!("`{name}` has a density and a mass"))
+                .help("leave one of them out"));
+        }
+        let density = free.density.as_ref().map(|value| self.reader.positive(value, DENSITY)).transpose()?;
+        let stated = free.mass.as_ref().map(|value| self.reader.positive(value, MASS)).transpose()?;
+        if density.is_none() && stated.is_none() {
+            if let Some(inertia) = &free.inertia {
+                return Err(problem
+                    .error(&inertia.0, format!("`{name}` has moments of inertia and no mass"))
+                    .help("add `mass`, or give a `density` in place of `inertia`"));
+            }
+            return Ok(None);
+        }
+        // A hole has no inside.
+        let solid = if key.side == Some(Side::Inside) { None } else { self.solid_of(key, shape)? };
+        let unknown = |at: KeyPath| {
+            problem
+                .error(&at, format!("volume and moments of inertia of `{name}` are not known for a shape of this kind"))
+                .help("give `mass`, `inertia` and `center` in place of `density`; closed triangle meshes, spheres, ellipsoids, tori and closed bodies of revolution have them")
+        };
+        let mass = match (stated, density, &solid) {
+            (Some(mass), _, _) => mass,
+            (None, Some(density), Some(solid)) => density * solid.volume,
+            (None, _, _) => return Err(unknown(free.density.as_ref().map_or(self.key(key), |d| self.key(d)))),
+        };
+        let centre = match (&free.center, &solid) {
+            (Some(stated), Some(solid)) => {
+                if (place - solid.centre).norm() > SAME_PLACE * shape.bounds().map_or(place.norm(), |b| b.size().norm())
+                    && free.inertia.is_none()
+                {
+                    let at = solid.centre.iter().map(|x| format!("{x}")).collect::<Vec<_>>().join(", ");
+                    return Err(problem
+                        .error(stated, format!("with a mass the centre is the centre of mass, at ({at})"))
+                        .help("leave `center` out, or give `inertia` about it"));
+                }
+                place
+            }
+            (Some(_), None) => place,
+            (None, Some(solid)) => solid.centre,
+            (None, None) => place,
+        };
+        let inertia = match (&free.inertia, &solid) {
+            (Some(stated), _) => self.inertia_of(name, stated)?,
+            (None, Some(solid)) => solid.inertia * (mass / solid.volume),
+            // Nothing turns.
+            (None, None) if self.space == Space::Axisymmetric => Matrix::<3>::zeros(),
+            (None, None) => return Err(unknown(free.mass.as_ref().map_or(self.key(key), |m| self.key(m)))),
+        };
+        Ok(Some(Found { own: RigidMass { mass, inertia, velocity, angular_velocity }, centre }))
+    }
+
+    /// Velocity and angular velocity at the start.
+    fn velocities_of(&self, free: &FreeMotion) -> Result<(Vector<3>, Vector<3>), CaseError> {
+        let problem = self.problem;
+        let velocity = free.velocity.as_ref().map(|v| self.position(v, VELOCITY)).transpose()?;
+        let Some(stated) = &free.angular_velocity else {
+            return Ok((velocity.unwrap_or_default(), Vector::<3>::zeros()));
+        };
+        let turning = match (self.space, &stated.0[..]) {
+            (Space::ThreeD, _) => Vector::<3>::from(self.reader.numbers::<3>(&stated.0, FREQUENCY)?),
+            (Space::Axisymmetric, _) => {
+                return Err(problem.error(&stated.0, "around an axis a body moves along the axis only"));
+            }
+            (_, [value]) => Vector::<3>::z() * self.reader.number(value, FREQUENCY)?,
+            _ => {
+                return Err(problem
+                    .error(&stated.0, "in the plane there is one angular velocity, about z")
+                    .help("angular_velocity = 3.0"));
+            }
+        };
+        Ok((velocity.unwrap_or_default(), turning))
+    }
+
+    /// Moments of inertia that are stated.
+    fn inertia_of(&self, name: &str, stated: &Components) -> Result<Matrix<3>, CaseError> {
+        let list: Vec<f64> =
+            stated.0.iter().map(|value| self.reader.positive(value, INERTIA)).collect::<Result<_, _>>()?;
+        match list[..] {
+            [one] => Ok(Matrix::<3>::identity() * one),
+            [x, y, z] if self.space == Space::ThreeD => {
+                // No body is farther from one axis than from both others together.
+                if x > y + z || y > z + x || z > x + y {
+                    let message = format!("no body has the moments of inertia {x}, {y}, {z} of `{name}`");
+                    return Err(self
+                        .problem
+                        .error(&stated.0, message)
+                        .help("none of the three is larger than the sum of the others"));
+                }
+                Ok(Matrix::<3>::from_diagonal(&Vector::<3>::new(x, y, z)))
+            }
+            _ => Err(self
+                .problem
+                .error(&stated.0, format!("expected one moment of inertia, or three in space, found {}", list.len()))
+                .help("inertia = [0.1, 0.2, 0.3], about the axes of space through the centre")),
+        }
+    }
+
+    /// Volume, centre of mass and moments of inertia of a shape with density one; per thickness in the plane.
+    fn solid_of(&self, key: &Rigid, shape: &dyn RigidShape) -> Result<Option<MassProperties>, CaseError> {
+        let in_plane = !matches!(self.space, Space::ThreeD | Space::Axisymmetric);
+        if key.smooth == Some(true) {
+            return Ok(None);
+        }
+        Ok(match &key.shape {
+            Shape::Stl(file) => Some(MassProperties::polyhedron(&self.closed_mesh(file)?)),
+            Shape::File(file) => Some(MassProperties::polyhedron(&self.boundary_of_file(file)?)),
+            Shape::Triangles(arrays) => Some(MassProperties::polyhedron(&self.surface_of_arrays(arrays)?)),
+            Shape::Sphere(sphere) if in_plane => {
+                let radius = self.reader.positive(&sphere.radius, LENGTH)?;
+                Some(MassProperties::ellipse(shape.centre(), [radius; 2]))
+            }
+            Shape::Cylinder(cylinder) if in_plane => {
+                let radius = self.reader.positive(&cylinder.radius, LENGTH)?;
+                Some(MassProperties::ellipse(shape.centre(), [radius; 2]))
+            }
+            Shape::Ellipsoid(ellipsoid) if in_plane => {
+                let semi_axes = self.reader.numbers::<2>(&ellipsoid.semi_axes, LENGTH)?;
+                Some(MassProperties::ellipse(shape.centre(), semi_axes))
+            }
+            _ if in_plane => None,
+            _ => shape.mass_properties(),
+        })
     }
 
     /// The points of a rigid body that are tested, and its size: a ball at its centre, a triangle mesh at its vertices.

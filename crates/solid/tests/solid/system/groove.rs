@@ -14,6 +14,7 @@ fn settled(mu: Option<f64>, law: StressLaw, enforcement: Enforcement) -> (System
         centre,
         sites: vec![site],
         size: 2.0 * radius,
+        mass: None,
     };
     let mut system = System::default();
     system.bodies.push(Box::new(ball));

@@ -90,7 +90,7 @@ pub fn rigid(shape: impl RigidShape + 'static, motion: impl Fn(f64) -> Vector<3>
     let zero = Vector::<3>::zeros();
     let centre = shape.centre();
     let motion = Motion::Prescribed(Arc::new(move |t| RigidMotion::new(zero, zero, motion(t))));
-    RigidBody { name: "tool".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
+    RigidBody { name: "tool".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0, mass: None }
 }
 
 /// Where contact is tested.

@@ -87,7 +87,15 @@ fn a_rigid_body_hangs_on_its_tie() {
     let centre = Point::<3>::new(0.5, 0.5, 1.4);
     let shape = Sphere { center: centre, radius: 0.4 };
     let motion = Motion::Free { plane: false };
-    let ball = RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 0.8 };
+    let ball = RigidBody {
+        name: "ball".into(),
+        shape: Arc::new(shape),
+        motion,
+        centre,
+        sites: Vec::new(),
+        size: 0.8,
+        mass: None,
+    };
     system.bodies.push(Box::new(ball));
     system.contacts.push(Box::new(tie(&system, (0, "top"), (1, ""), Test::Mortar(0), Some(0.3))));
     system.supports.push(hold(0, "bottom", [Some(0.0); 3]));
@@ -115,8 +123,15 @@ fn tangents_of_ties_are_exact() {
             let centre = Point::<3>::new(0.5, 0.5, 0.5);
             let shape = Sphere { center: centre, radius: 0.5 };
             let motion = Motion::Free { plane: false };
-            let ball =
-                RigidBody { name: "ball".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 };
+            let ball = RigidBody {
+                name: "ball".into(),
+                shape: Arc::new(shape),
+                motion,
+                centre,
+                sites: Vec::new(),
+                size: 1.0,
+                mass: None,
+            };
             system.bodies[0] = Box::new(ball);
         }
         let group = if rigid { "" } else { "top" };

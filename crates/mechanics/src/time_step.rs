@@ -27,6 +27,7 @@ use crate::system::{AssemblyError, System, SystemState};
 use nalgebra::{Rotation3, UnitQuaternion};
 use signorini_geometry::{Matrix, Vector};
 use signorini_solve::general::{Analysis, Entries};
+use std::collections::BTreeMap;
 
 /// The weights of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,15 +170,15 @@ impl System {
         Ok(self.bodies.iter().map(|b| b.mass(&[])).collect::<Result<_, _>>()?)
     }
 
-    /// A state from which bodies begin to move: velocities as they are, with what supports prescribe, and the accelerations
-    /// that follow.
-    fn begin_to_move(&self, state: &mut SystemState) -> Result<(), AssemblyError> {
+    /// A state from which bodies begin to move: velocities as they are, and the accelerations that follow with what holds at a time
+    /// right after.
+    fn begin_to_move(&self, state: &mut SystemState, after: f64) -> Result<(), AssemblyError> {
         let (_, count) = self.numbering();
         if state.velocities.is_empty() {
             state.velocities = vec![0.0; count];
         }
         let mut forces = self.forces(state)?;
-        let (single, _) = self.held(&state.bodies, state.time)?;
+        let (single, _) = self.held(&state.bodies, after)?;
         single.iter().for_each(|h| forces[h.constraint.terms[0].0 as usize] = 0.0);
         let right: Vec<f64> = forces.iter().map(|f| -f).collect();
         state.accelerations = self.by_mass(&self.whole_masses()?, &right)?;
@@ -194,6 +195,18 @@ impl System {
         state.forces = forces;
     }
 
+    /// What supports prescribe of single unknowns all along an increment, relative to a state: at its start, middle and end.
+    fn prescribed(&self, at: &SystemState, start: f64, end: f64) -> Result<BTreeMap<usize, [f64; 3]>, AssemblyError> {
+        let mut out: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for time in [start, 0.5 * (start + end), end] {
+            for held in self.held(&at.bodies, time)?.0 {
+                let (unknown, factor) = held.constraint.terms[0];
+                out.entry(unknown as usize).or_default().push(-held.constraint.violation / factor);
+            }
+        }
+        Ok(out.into_iter().filter_map(|(unknown, values)| Some((unknown, values.try_into().ok()?))).collect())
+    }
+
     /// The increment from a state to a time; `from` begins to move if it does not.
     pub(crate) fn time_step(
         &self,
@@ -202,7 +215,7 @@ impl System {
         dynamics: &Dynamics,
     ) -> Result<TimeStep, AssemblyError> {
         if from.forces.is_empty() {
-            self.begin_to_move(from)?;
+            self.begin_to_move(from, 0.5 * (from.time + time))?;
         }
         let (first, count) = self.numbering();
         let size = time - from.time;
@@ -289,12 +302,8 @@ impl System {
         for (k, _) in self.has_mass().iter().enumerate().filter(|(_, has)| !**has) {
             velocities[k] = u[k] / h;
         }
-        let [start, middle, end] =
-            [state.time - h, state.time - 0.5 * h, state.time].map(|t| self.held(&state.bodies, t));
-        for ((a, b), c) in start?.0.iter().zip(&middle?.0).zip(&end?.0) {
-            let (unknown, factor) = a.constraint.terms[0];
-            let [a, b, c] = [a, b, c].map(|h| -h.constraint.violation / factor);
-            velocities[unknown as usize] = (a - 4.0 * b + 3.0 * c) / h;
+        for (unknown, [start, middle, end]) in self.prescribed(state, state.time - h, state.time)? {
+            velocities[unknown] = (start - 4.0 * middle + 3.0 * end) / h;
         }
         (state.velocities, state.accelerations, state.balancing) = (velocities, accelerations, balancing);
         let forces = self.forces(state)?;

@@ -11,7 +11,7 @@ use crate::points::Order;
 use crate::shown_surface::ShownSurface;
 use crate::site_result::{SiteResult, with_rest};
 use crate::stability::{Stability, UnstableMode};
-use crate::system::{AssemblyError, System, SystemState};
+use crate::system::{AssemblyError, Holder, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
@@ -27,6 +27,8 @@ pub struct IncrementResult {
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
+    /// Force of each linear constraint on its nodes, per unit of their factors.
+    pub constraint_forces: Vec<f64>,
     pub energy: f64,
     /// Energy that the friction of each contact took in the increment.
     pub dissipated: Vec<f64>,
@@ -413,6 +415,7 @@ impl System {
         let (_, count) = self.numbering();
         let at = self.assemble(state, time, Order::First)?;
         let mut support_forces = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
+        let mut constraint_forces = vec![0.0; self.constraints.len()];
         let mut residual = at.residual.clone();
         for held in &at.single {
             let (unknown, factor) = held.constraint.terms[0];
@@ -421,6 +424,9 @@ impl System {
         }
         for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
             held.add_reaction(-reaction, &mut support_forces);
+            if let Holder::Constraint(k) = held.by {
+                constraint_forces[k] = -reaction;
+            }
         }
         at.weakly_held.iter().for_each(|(support, force)| support_forces[*support][0] += force);
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
@@ -436,6 +442,7 @@ impl System {
             history,
             sites,
             support_forces,
+            constraint_forces,
             energy: at.energy,
             dissipated,
             dissipated_in_bodies,

@@ -9,6 +9,7 @@ pub mod arrays;
 pub mod body;
 pub mod case;
 pub mod cells;
+mod constraint;
 pub mod contact;
 pub mod curve;
 pub mod error;
@@ -33,6 +34,7 @@ mod walk;
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;
 pub use cells::*;
+pub use constraint::{ConstraintTerm, LinearConstraint};
 pub use contact::*;
 pub use curve::*;
 pub use error::CaseError;
@@ -86,6 +88,9 @@ pub struct Problem {
     /// Contacts between bodies, by names of your own.
     #[serde(default)]
     pub contacts: Named<Contact>,
+    /// Equations between displacements of single nodes of solids, by names of your own.
+    #[serde(default)]
+    pub constraints: Named<LinearConstraint>,
     /// Load steps. Without steps one state is computed at t = 0.
     #[serde(default)]
     pub steps: List<Step>,
@@ -131,6 +136,7 @@ impl Problem {
             supports: Named::default(),
             loads: Named::default(),
             contacts: Named::default(),
+            constraints: Named::default(),
             steps: List::default(),
             stability: None,
             output: Output::default(),

@@ -122,7 +122,14 @@ impl Row {
             *self.terms.entry(*unknown).or_default() -= share * factor;
         }
         self.rest -= share * other.rest;
-        other.of.iter().filter(|h| !self.of.contains(h)).copied().collect::<Vec<_>>().into_iter().for_each(|h| self.of.push(h));
+        other
+            .of
+            .iter()
+            .filter(|h| !self.of.contains(h))
+            .copied()
+            .collect::<Vec<_>>()
+            .into_iter()
+            .for_each(|h| self.of.push(h));
     }
 }
 

@@ -8,8 +8,8 @@ use crate::axes::Axes;
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Load, PlaceError};
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_bodies::LinearBodies;
-pub use crate::linear_constraint::OfTime;
 use crate::linear_constraint::LinearConstraint;
+pub use crate::linear_constraint::OfTime;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
@@ -366,9 +366,7 @@ impl System {
             } else {
                 let alike = by_first.get(&first).into_iter().flatten().map(|k| &out[*k]);
                 let mut found = alike.filter_map(|other| Some((other, ratio(terms, &other.constraint.terms)?)));
-                found
-                    .next()
-                    .map(|(other, r)| (other.by, held.constraint.violation - r * other.constraint.violation))
+                found.next().map(|(other, r)| (other.by, held.constraint.violation - r * other.constraint.violation))
             };
             match said {
                 Some((other, violation)) if violation.abs() > SAME * body.size() * size => {

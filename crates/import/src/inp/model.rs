@@ -1,8 +1,8 @@
 //! Materials, sections, contacts, supports and loads of a deck.
 
 use super::boundary::EqualDisplacements;
-use super::equation::StatedEquation;
 use super::card::Card;
+use super::equation::StatedEquation;
 use super::steps::Histories;
 use super::{material, refused};
 use crate::ImportError;

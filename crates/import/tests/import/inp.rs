@@ -212,7 +212,12 @@ fn what_cannot_be_imported_is_named_with_its_line() {
             "1, S7",
             "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7",
         ),
-        ("*NODE\n99, 0, 0, 0\n*EQUATION\n2\n15, 3, 1., 99, 3, -2.", STEP, "2", "*EQUATION: the node 99 belongs to no element"),
+        (
+            "*NODE\n99, 0, 0, 0\n*EQUATION\n2\n15, 3, 1., 99, 3, -2.",
+            STEP,
+            "2",
+            "*EQUATION: the node 99 belongs to no element",
+        ),
         ("*EQUATION\n2\n15, 3, 1., 16, 4, -2.", STEP, "15, 3, 1., 16", "*EQUATION: direction 4: valid are 1 to 3"),
     ] {
         let text = cubes(model, steps);

@@ -75,7 +75,8 @@ impl Planner<'_> {
         let idle = system.idle_constraints(0.0).map_err(|e| self.unprepared(&e.into()))?;
         for k in idle {
             let name = &system.constraints[k].name;
-            let message = format!("the constraint `{name}` follows from supports and other constraints: it has no force");
+            let message =
+                format!("the constraint `{name}` follows from supports and other constraints: it has no force");
             warnings.push(message.as_str().into());
         }
         Ok(())

@@ -114,7 +114,9 @@ impl Planner<'_> {
         if let IncrementError::Assembly(AssemblyError::ContradictedConstraint { constraint, .. }) = error
             && let Some(key) = problem.constraints.get(constraint)
         {
-            return problem.error(key, error.to_string()).help("leave it out, or give the value that follows from the others");
+            return problem
+                .error(key, error.to_string())
+                .help("leave it out, or give the value that follows from the others");
         }
         let IncrementError::Assembly(AssemblyError::Contradiction { second, .. }) = error else {
             return problem.error(&problem.space, error.to_string());

@@ -34,7 +34,7 @@ impl Scalar {
     }
 
     fn taylor(self, n: usize, m: f64) -> f64 {
-        let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
         match self {
             Scalar::HalfLogarithm => -0.5 * sign / (n as f64 * m.powi(n as i32)),
             Scalar::FallingExponential => sign * (-m).exp() / (1..=n).map(|k| k as f64).product::<f64>(),

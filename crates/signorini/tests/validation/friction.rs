@@ -43,7 +43,7 @@ fn a_slider_follows_rate_and_state_friction() {
         format!(
             "space = \"plane_strain\"
 [bodies.block.solid]
-mesh.box = {{ min = [0, 0], max = [1, 0.1], cells = [2, 1] }}
+mesh.box = {{ min = [0, 0], max = [1, 0.1], cells = [1, 1] }}
 material.linear_elastic = {{ youngs_modulus = 1e6, poissons_ratio = 0 }}
 [bodies.floor.rigid]
 shape.plane = {{ point = [0, 0], normal = [0, 1] }}
@@ -67,12 +67,12 @@ increments = {increments}
         )
     };
     for (evolution, method, exact) in [("aging", "mortar", 0.6152502193534), ("slip", "node", 0.6139387678523)] {
-        let errors = [100, 200].map(|n| {
+        let errors = [25, 50].map(|n| {
             let found = summary(&case(evolution, method, n), &set(&[]));
             let force = &last_step(&found)["contacts"]["rub"]["friction_force"];
             (-number(&force[0]) - exact).abs()
         });
-        assert!(errors[1] < 2e-4 && errors[0] / errors[1] > 1.8, "{evolution}: {errors:?}");
+        assert!(errors[1] < 4e-4 && errors[0] / errors[1] > 1.8, "{evolution}: {errors:?}");
     }
     let both = case("aging", "mortar", 1).replace("method.mortar = {}", "wear = 1e-9");
     let told = error(&both);

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '5e31c1463763583d'
+SCHEMA = 'a215678e9a3f248d'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -24,7 +24,7 @@ CHOICES = {
     'Control': {'time': 'Time', 'arc_length': 'ArcLength', 'area': 'AreaControl'},
     'Domain': {'disc': 'Disc', 'ellipse': 'Ellipse', 'rectangle': 'Rectangle', 'polygon': 'Polygon', 'implicit': 'Implicit', 'interval': 'Interval'},
     'Enforcement': {'multiplier': 'Multiplier', 'augmented_lagrangian': 'AugmentedLagrangian', 'nitsche': 'Nitsche', 'penalty': 'Penalty'},
-    'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction'},
+    'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction', 'rate_and_state': 'RateAndStateFriction'},
     'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff', 'mooney_rivlin': 'MooneyRivlin', 'yeoh': 'Yeoh', 'ogden': 'Ogden', 'arruda_boyce': 'ArrudaBoyce', 'orthotropic': 'Orthotropic', 'elastic_plastic': 'ElasticPlastic'},
     'Mesh': {'grid': 'GridMesh', 'gmsh': 'DividedGmshMesh', 'arrays': 'MeshArrays'},
     'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discs': 'DiscMethod'},
@@ -511,6 +511,26 @@ class Cone(Noun):
         self.half_angle = half_angle
 
 
+class ConstraintTerm(Noun):
+    """A node, and the vector by which its displacement is multiplied.
+
+    on: Group of a solid that holds one node: `BODY:GROUP`.
+    factor: Coefficients of the components of the displacement.
+    """
+
+    _key = None
+    _types = {'on': ('on', 'str'), 'factor': ('factor', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        factor: Sequence[Value] | Array,
+    ) -> None:
+        self.on = on
+        self.factor = factor
+
+
 class Contact(Noun):
     """A contact between bodies.
 
@@ -542,7 +562,7 @@ class Contact(Noun):
         between: Optional[Sequence[str] | Array] = None,
         cohesion: Optional[Cohesion | Mapping[str, Any]] = None,
         compliance: Optional[ExponentialCompliance | PowerCompliance | Mapping[str, Any] | str] = None,
-        friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | Mapping[str, Any] | str] = None,
+        friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | RateAndStateFriction | Mapping[str, Any] | str] = None,
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
         self_contact: Optional[str] = None,
         sliding: Optional[str] = None,
@@ -760,7 +780,7 @@ class ElasticPlastic(Noun):
     hardening: Modulus of linear isotropic hardening: yield stress per plastic strain, a force per area, beyond
         the last row of a table; 0 if left out.
     kinematic_hardening: Modulus of linear kinematic hardening (Prager): uniaxial stress per plastic strain, a
-        force per area; 0 if left out. At small strain only.
+        force per area; 0 if left out. With `strain = "finite"` of the logarithms of the plastic stretches.
     """
 
     _key = 'elastic_plastic'
@@ -1327,6 +1347,27 @@ class Limits(Noun):
     ) -> None:
         self.max_iterations = max_iterations
         self.max_time = max_time
+
+
+class LinearConstraint(Noun):
+    """An equation between displacements of single nodes of solids: the sum of `factor · displacement` over all terms
+    is `value`.
+
+    terms: Terms of the sum.
+    value: The value of the sum, a length; zero if left out.
+    """
+
+    _key = None
+    _types = {'terms': ('terms', '[ConstraintTerm]'), 'value': ('value', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        terms: Sequence[ConstraintTerm | Mapping[str, Any]] | Array,
+        value: Optional[Value] = None,
+    ) -> None:
+        self.terms = terms
+        self.value = value
 
 
 class LinearElastic(Noun):
@@ -2111,6 +2152,43 @@ class Prescribed(Noun):
     ) -> None:
         self.displacement = displacement
         self.rotation = rotation
+
+
+class RateAndStateFriction(Noun):
+    """Rate-and-state friction of Dieterich and Ruina, regularised at rest. Only for solids and finite cells, and for
+    rigid bodies in contact with them. There is no stick; contact points creep.
+
+    mu: Coefficient of friction of steady slip at `velocity`.
+    a: Direct effect: change of the coefficient per logarithm of the velocity at a constant state.
+    b: Effect of the state: change of the coefficient per logarithm of the state. Steady friction falls with the
+        velocity if it is larger than `a`.
+    velocity: Reference velocity, a length per time.
+    distance: Slip over which the state changes, a length.
+    evolution: How the state changes; `aging` if left out.
+    state: State at the start, a time; that of steady slip at `velocity` if left out.
+    """
+
+    _key = 'rate_and_state'
+    _types = {'mu': ('mu', 'Value'), 'a': ('a', 'Value'), 'b': ('b', 'Value'), 'velocity': ('velocity', 'Value'), 'distance': ('distance', 'Value'), 'evolution': ('evolution', 'str'), 'state': ('state', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        mu: Value,
+        a: Value,
+        b: Value,
+        velocity: Value,
+        distance: Value,
+        evolution: Optional[str] = None,
+        state: Optional[Value] = None,
+    ) -> None:
+        self.mu = mu
+        self.a = a
+        self.b = b
+        self.velocity = velocity
+        self.distance = distance
+        self.evolution = evolution
+        self.state = state
 
 
 class Rectangle(Noun):
@@ -2916,6 +2994,7 @@ class ProblemKeys(Noun):
     bodies: Bodies, by names of your own.
     analysis: Kind of analysis; `equilibrium` if left out.
     constants: Named numbers for use in expressions.
+    constraints: Equations between displacements of single nodes of solids, by names of your own.
     contacts: Contacts between bodies, by names of your own.
     fit: Parameters that `signorini fit` computes from measurements.
     frames: With `analysis = "wrapping"`: number of times in [0, 1]; 2 if left out.
@@ -2936,7 +3015,7 @@ class ProblemKeys(Noun):
     """
 
     _key = None
-    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
+    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
 
     def __init__(
         self,
@@ -2944,6 +3023,7 @@ class ProblemKeys(Noun):
         bodies: Mapping[str, Membrane | Rigid | Solid | Cells | Rope | Beam | Mapping[str, Any] | str],
         analysis: Optional[str] = None,
         constants: Optional[Mapping[str, Value]] = None,
+        constraints: Optional[Mapping[str, LinearConstraint | Mapping[str, Any]]] = None,
         contacts: Optional[Mapping[str, Contact | Mapping[str, Any]]] = None,
         fit: Optional[Fit | Mapping[str, Any]] = None,
         frames: Optional[int] = None,
@@ -2965,6 +3045,7 @@ class ProblemKeys(Noun):
         self.bodies = bodies
         self.analysis = analysis
         self.constants = constants
+        self.constraints = constraints
         self.contacts = contacts
         self.fit = fit
         self.frames = frames
@@ -2984,4 +3065,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

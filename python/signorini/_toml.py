@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 #: Tables whose entries are tables with a heading of their own.
-NAMED = ("supports", "loads", "contacts", "functions", "paths", "winding", "ropes")
+NAMED = ("supports", "loads", "contacts", "constraints", "functions", "paths", "winding", "ropes")
 ALONE = ("constants", "output", "limits", "fit")
 
 

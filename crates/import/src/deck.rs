@@ -147,6 +147,14 @@ pub struct Support {
     pub until: Option<f64>,
 }
 
+/// An equation between displacements of nodes: the sum of all of them, each times its vector, is a value.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    pub terms: Vec<(u64, [f64; 3])>,
+    pub value: Curve,
+    pub line: usize,
+}
+
 /// What a load is.
 #[derive(Clone, Debug)]
 pub enum LoadKind {
@@ -339,6 +347,7 @@ pub struct Deck {
     pub carried: Vec<(Place, String)>,
     pub adjustments: Vec<Adjustment>,
     pub supports: Vec<Support>,
+    pub equations: Vec<Equation>,
     pub loads: Vec<Load>,
     pub steps: Vec<Step>,
     /// Whether strains may be finite.

@@ -66,6 +66,8 @@ pub(crate) struct PointHistory {
     pub offset: f64,
     /// The trial of the last state, of a law that softens.
     pub trial: [f64; 3],
+    /// What a law with a state remembers.
+    pub state: f64,
 }
 
 /// The scales of the equation of a multiplier.
@@ -165,7 +167,7 @@ impl ContactLaw {
     /// What a point remembers of a state with these trials; without them nothing met it there.
     pub(crate) fn remembered(&self, k: usize, at: Option<(&PointMeasure, [f64; 3], &Projected)>) -> PointHistory {
         let before = self.history[k];
-        let remembers = |law: &&dyn Law| law.least_scale() > 0.0 || law.wear() > 0.0;
+        let remembers = |law: &&dyn Law| law.least_scale() > 0.0 || law.wear() > 0.0 || law.has_state();
         let Some(law) = self.friction.as_deref().filter(remembers) else { return before };
         if self.is_new && law.is_bond() {
             return match at {
@@ -176,9 +178,11 @@ impl ContactLaw {
             };
         }
         let Some((measure, trial, projected)) = at else { return before };
-        let opening = law.opening(trial, &self.point(k, measure));
+        let point = self.point(k, measure);
+        let opening = law.opening(trial, &point);
+        let state = law.remember(trial, projected.traction, &point);
         let worn = law.wear() * projected.traction[0] * measure.slip[0].hypot(measure.slip[1]);
-        PointHistory { opened: before.opened.max(opening), offset: before.offset + worn, trial }
+        PointHistory { opened: before.opened.max(opening), offset: before.offset + worn, trial, state }
     }
 
     /// What the law is told of a point besides its trial.
@@ -187,6 +191,7 @@ impl ContactLaw {
             per_gap: self.stiffness[k],
             duration: self.duration(),
             opened: self.history[k].opened,
+            remembered: self.history[k].state,
             slipped: measure.slipped,
         }
     }

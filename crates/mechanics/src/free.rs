@@ -240,7 +240,8 @@ impl Problem<'_> {
     /// Whether a support pulls a rigid body.
     pub(crate) fn is_pulled(&self, at: &SystemState) -> bool {
         let lacks = |h: &crate::system::Held| {
-            let (body, violation) = (self.system.supports[h.support].part.body, h.constraint.violation.abs());
+            let Some(support) = h.support() else { return false };
+            let (body, violation) = (self.system.supports[support].part.body, h.constraint.violation.abs());
             let size = self.system.bodies[body].size();
             self.system.bodies[body].is_rigid()
                 && violation > 0.5 * LEAP * if h.constraint.turns() { 1.0 } else { size }

@@ -12,7 +12,7 @@ use crate::points::Order;
 use crate::shown_surface::ShownSurface;
 use crate::site_result::{SiteResult, with_rest};
 use crate::stability::{Stability, UnstableMode};
-use crate::system::{Assembled, AssemblyError, System, SystemState};
+use crate::system::{Assembled, AssemblyError, Holder, System, SystemState};
 use signorini_geometry::Vector;
 use signorini_solve::general::Analysis;
 use signorini_solve::newton::Converged;
@@ -28,6 +28,8 @@ pub struct IncrementResult {
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
+    /// Force of each linear constraint on its nodes, per unit of their factors.
+    pub constraint_forces: Vec<f64>,
     pub energy: f64,
     /// Energy that the friction of each contact took in the increment.
     pub dissipated: Vec<f64>,
@@ -487,6 +489,12 @@ impl System {
         let support_forces = self.support_forces(&at, state);
         let mut residual = at.residual.clone();
         at.single.iter().for_each(|held| residual[held.constraint.terms[0].0 as usize] = 0.0);
+        let mut constraint_forces = vec![0.0; self.constraints.len()];
+        for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
+            if let Holder::Constraint(k) = held.by {
+                constraint_forces[k] = -reaction;
+            }
+        }
         let most = at.sizes[..count].iter().fold(f64::MIN_POSITIVE, |m, s| m.max(*s));
         // Where no force acts what is left is the rounding of the positions.
         let most = most.max(1e10 * rounding);
@@ -500,6 +508,7 @@ impl System {
             history,
             sites,
             support_forces,
+            constraint_forces,
             energy: at.energy,
             dissipated,
             dissipated_in_bodies,

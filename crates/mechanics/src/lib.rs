@@ -10,7 +10,7 @@
 //! - [`contact_law`]: law and enforcement at a point; [`contact`]: the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`dynamics`]: motion with inertia; [`time_step`]: one increment of it.
-//! - [`system`]: bodies, supports, loads and contacts, assembled.
+//! - [`system`]: bodies, supports, loads and contacts, assembled; `linear_constraint`: equations between single nodes.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
@@ -42,6 +42,7 @@ mod inside;
 pub mod interaction;
 pub mod iterative;
 mod linear_bodies;
+mod linear_constraint;
 pub mod linear_solver;
 pub mod mortar;
 mod nitsche;
@@ -83,6 +84,7 @@ pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
 pub use inside::Inside;
 pub use interaction::{Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, Passing};
+pub use linear_constraint::{ConstraintTerm, LinearConstraint};
 pub use linear_solver::{Coarse, LinearSolver, Solved, Subspaces};
 pub use mortar::{Mortar, Tie, TieFindings};
 pub use pair::AxisChoice;

@@ -40,7 +40,7 @@ impl System {
         let (first, count) = self.numbering();
         let mut held = vec![false; count];
         // What is free at another time may carry then.
-        let lasting = single.iter().filter(|h| self.supports[h.support].is_permanent());
+        let lasting = single.iter().filter(|h| h.support().is_none_or(|k| self.supports[k].is_permanent()));
         lasting.for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
         let at = Bodies { bodies: &self.bodies, states: &start.bodies, first: &first };
         self.contacts.iter_mut().for_each(|contact| contact.leave_out_held(at, &held));

@@ -3,7 +3,7 @@
 
 use crate::body::{Contribution, Order};
 use crate::increment_error::IncrementError;
-use crate::system::{AssemblyError, System, SystemState};
+use crate::system::{AssemblyError, Held, System, SystemState};
 use signorini_geometry::Vector;
 
 impl System {
@@ -16,16 +16,17 @@ impl System {
         let at = self.assemble(state, time, Order::First)?;
         let mut forces: Vec<Vec<f64>> =
             self.supports.iter().map(|s| vec![0.0; self.bodies[s.part.body].unknowns()]).collect();
-        let mut add = |support: usize, unknown: u32, force: f64| {
+        let mut add = |held: &Held, unknown: u32, force: f64| {
+            let Some(support) = held.support() else { return };
             let own = unknown - first[self.supports[support].part.body];
             forces[support][own as usize] += force;
         };
         for held in &at.single {
             let (unknown, _) = held.constraint.terms[0];
-            add(held.support, unknown, at.residual[unknown as usize]);
+            add(held, unknown, at.residual[unknown as usize]);
         }
         for (held, reaction) in at.coupled.iter().zip(&state.reactions) {
-            held.constraint.terms.iter().for_each(|(unknown, factor)| add(held.support, *unknown, -factor * reaction));
+            held.constraint.terms.iter().for_each(|(unknown, factor)| add(held, *unknown, -factor * reaction));
         }
         let moment = |(support, mut forces): (&crate::Support, Vec<f64>)| {
             let (body, own) = (&self.bodies[support.part.body], &state.bodies[support.part.body]);

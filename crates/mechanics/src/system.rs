@@ -9,6 +9,8 @@ use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, Hold, Lo
 use crate::dynamics::{Dynamics, Mass};
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_bodies::LinearBodies;
+use crate::linear_constraint::LinearConstraint;
+pub use crate::linear_constraint::OfTime;
 use crate::linear_solver::{LinearSolver, Stiffness};
 use crate::part::Part;
 use crate::points::Order;
@@ -139,6 +141,8 @@ pub struct System {
     pub supports: Vec<Support>,
     pub loads: Vec<PlacedLoad>,
     pub contacts: Vec<Box<dyn Interaction>>,
+    /// Equations between displacements of single nodes.
+    pub constraints: Vec<LinearConstraint>,
     pub solver: LinearSolver,
     /// What is done with states that are not stable.
     pub unstable: Unstable,
@@ -194,20 +198,40 @@ pub enum AssemblyError {
     /// Two supports that ask for different things.
     #[error("supports `{first}` and `{second}` contradict each other on `{body}`")]
     Contradiction { first: String, second: String, body: String },
+    /// A linear constraint that asks for something else than what holds already.
+    #[error("the constraint `{constraint}` contradicts {by}")]
+    ContradictedConstraint { constraint: String, by: String },
 }
 
-/// An equation of a support, in the numbers of the system.
+/// What an equation is of, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
+pub enum Holder {
+    Support(usize),
+    Constraint(usize),
+}
+
+/// An equation of a support or a linear constraint, in the numbers of the system.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Held {
-    pub support: usize,
+    pub by: Holder,
     pub constraint: Constraint,
 }
 
 impl Held {
+    /// The number of the support that it is of, if it is of one.
+    pub fn support(&self) -> Option<usize> {
+        match self.by {
+            Holder::Support(k) => Some(k),
+            Holder::Constraint(_) => None,
+        }
+    }
+
     /// Adds what the support does to its body at a value of the multiplier.
     pub fn add_reaction(&self, multiplier: f64, forces: &mut [[Vector<3>; 2]]) {
-        let own = &mut forces[self.support];
+        let Some(support) = self.support() else { return };
+        let own = &mut forces[support];
         own.iter_mut().zip(&self.constraint.reaction).for_each(|(sum, r)| *sum += r * multiplier);
     }
 }
@@ -317,7 +341,7 @@ impl System {
             let list = support.at(time, |hold| body.hold(on, hold, own))?;
             for mut constraint in list {
                 constraint.terms.iter_mut().for_each(|t| t.0 += first[support.part.body]);
-                let held = Held { support: number, constraint };
+                let held = Held { by: Holder::Support(number), constraint };
                 let [(unknown, factor)] = held.constraint.terms[..] else {
                     coupled.push(held);
                     continue;
@@ -332,14 +356,16 @@ impl System {
                 let other = violation(before, before.constraint.terms[0].1);
                 if (violation(&held, factor) - other).abs() > SAME * body.size() {
                     return Err(AssemblyError::Contradiction {
-                        first: self.supports[before.support].name.clone(),
+                        first: self.holder(before.by).to_string(),
                         second: support.name.clone(),
                         body: body.name().to_string(),
                     });
                 }
             }
         }
-        let coupled = self.independent(coupled, |unknown| Some(&single[by_unknown[unknown as usize]?]))?;
+        let held_at = |unknown: u32| Some(&single[by_unknown[unknown as usize]?]);
+        let mut coupled = self.independent(coupled, held_at)?;
+        coupled.extend(self.constrained(&first, (bodies, time), held_at, &coupled)?);
         Ok((single, coupled))
     }
 
@@ -353,7 +379,8 @@ impl System {
         let mut out: Vec<Held> = Vec::with_capacity(coupled.len());
         let mut by_first: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for held in coupled {
-            let body = &self.bodies[self.supports[held.support].part.body];
+            let Some(support) = held.support() else { continue };
+            let body = &self.bodies[self.supports[support].part.body];
             let terms = &held.constraint.terms;
             let size = terms.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
             let counts: Vec<(u32, f64)> = terms.iter().copied().filter(|t| t.1.abs() > SAME * size).collect();
@@ -366,19 +393,17 @@ impl System {
             let said = if counts.iter().all(|(unknown, _)| single(*unknown).is_some()) {
                 let others = counts.iter().filter_map(|(unknown, f)| Some((f, single(*unknown)?)));
                 let done: f64 = others.map(|(f, h)| f * h.constraint.violation / h.constraint.terms[0].1).sum();
-                single(first).map(|h| (h.support, held.constraint.violation - done))
+                single(first).map(|h| (h.by, held.constraint.violation - done))
             } else {
                 let alike = by_first.get(&first).into_iter().flatten().map(|k| &out[*k]);
                 let mut found = alike.filter_map(|other| Some((other, ratio(terms, &other.constraint.terms)?)));
-                found
-                    .next()
-                    .map(|(other, r)| (other.support, held.constraint.violation - r * other.constraint.violation))
+                found.next().map(|(other, r)| (other.by, held.constraint.violation - r * other.constraint.violation))
             };
             match said {
                 Some((other, violation)) if violation.abs() > SAME * body.size() * size => {
                     return Err(AssemblyError::Contradiction {
-                        first: self.supports[other].name.clone(),
-                        second: self.supports[held.support].name.clone(),
+                        first: self.holder(other).to_string(),
+                        second: self.supports[support].name.clone(),
                         body: body.name().to_string(),
                     });
                 }

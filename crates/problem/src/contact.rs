@@ -103,6 +103,39 @@ pub enum Friction {
     Tresca(TrescaFriction),
     /// Coulomb friction, regularised by the slip velocity. There is no stick; contact points creep.
     Viscous(ViscousFriction),
+    /// Rate-and-state friction of Dieterich and Ruina, regularised at rest. Only for solids and finite cells, and for rigid bodies
+    /// in contact with them. There is no stick; contact points creep.
+    RateAndState(RateAndStateFriction),
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RateAndStateFriction {
+    /// Coefficient of friction of steady slip at `velocity`.
+    pub mu: Value,
+    /// Direct effect: change of the coefficient per logarithm of the velocity at a constant state.
+    pub a: Value,
+    /// Effect of the state: change of the coefficient per logarithm of the state. Steady friction falls with the velocity if it is
+    /// larger than `a`.
+    pub b: Value,
+    /// Reference velocity, a length per time.
+    pub velocity: Value,
+    /// Slip over which the state changes, a length.
+    pub distance: Value,
+    /// How the state changes; `aging` if left out.
+    pub evolution: Option<StateEvolution>,
+    /// State at the start, a time; that of steady slip at `velocity` if left out.
+    pub state: Option<Value>,
+}
+
+/// How the state of rate-and-state friction changes.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum StateEvolution {
+    /// With time also at rest (Dieterich).
+    Aging,
+    /// By slip alone (Ruina).
+    Slip,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

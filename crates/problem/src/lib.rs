@@ -9,6 +9,7 @@ pub mod arrays;
 pub mod body;
 pub mod case;
 pub mod cells;
+mod constraint;
 pub mod contact;
 pub mod curve;
 pub mod error;
@@ -33,6 +34,7 @@ mod walk;
 pub use arrays::{Array, CellArrays, Grid2, MeshArrays, TriangleArrays};
 pub use body::*;
 pub use cells::*;
+pub use constraint::{ConstraintTerm, LinearConstraint};
 pub use contact::*;
 pub use curve::*;
 pub use error::CaseError;
@@ -86,6 +88,9 @@ pub struct Problem {
     /// Contacts between bodies, by names of your own.
     #[serde(default)]
     pub contacts: Named<Contact>,
+    /// Equations between displacements of single nodes of solids, by names of your own.
+    #[serde(default)]
+    pub constraints: Named<LinearConstraint>,
     /// Acceleration of gravity along each axis, which acts on every body with a mass, also at rest; expressions of t are possible.
     /// None if left out.
     pub gravity: Option<List<Value>>,
@@ -134,6 +139,7 @@ impl Problem {
             supports: Named::default(),
             loads: Named::default(),
             contacts: Named::default(),
+            constraints: Named::default(),
             gravity: None,
             steps: List::default(),
             stability: None,

@@ -87,7 +87,7 @@ pub struct ElasticPlastic {
     /// table; 0 if left out.
     pub hardening: Option<Value>,
     /// Modulus of linear kinematic hardening (Prager): uniaxial stress per plastic strain, a force per area; 0 if left out.
-    /// At small strain only.
+    /// With `strain = "finite"` of the logarithms of the plastic stretches.
     pub kinematic_hardening: Option<Value>,
 }
 

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 54] = [
+pub const GALLERY: [Example; 55] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -47,6 +47,7 @@ pub const GALLERY: [Example; 54] = [
     example!("ring", "a ring is pinched until its bore closes on itself"),
     example!("seal", "a rubber ring is squeezed in its groove, then loaded by pressure"),
     example!("snap_fit", "a hook snaps over a catch, with friction"),
+    example!("brinell", "a ball pressed into steel beyond yield: hardness is three times the yield stress"),
     example!("tubes", "two tubes of NURBS pressed crosswise on each other, at finite strain"),
     example!("groove", "a free ball between two elastic blocks, held by contact and friction only"),
     example!("capstan", "a rope round a drum, which begins to slip at the end that is pulled"),

@@ -37,7 +37,7 @@ fn derivatives_are_of_second_order() {
     let directions = [[0.7, 0.0, 0.0], [0.0, 0.8, -0.1], [0.2, 0.3, 0.5]];
     for law in &laws {
         for (opened, slipped) in [(0.0, [0.0; 2]), (0.4, [0.2, 0.1]), (9e9, [0.5, 0.2])] {
-            let point = LawPoint { per_gap: 4.0, duration: 0.5, opened, slipped };
+            let point = LawPoint { per_gap: 4.0, duration: 0.5, opened, slipped, ..LawPoint::default() };
             for trial in trials {
                 let at = law.traction(trial, &point);
                 for direction in directions {

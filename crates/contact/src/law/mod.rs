@@ -15,6 +15,7 @@
 mod cohesion;
 mod compliance;
 mod coulomb;
+mod rate_and_state;
 mod scheduled;
 mod tied;
 mod tresca;
@@ -24,6 +25,7 @@ mod wear;
 pub use cohesion::{Cohesion, CohesionKeys, Softening};
 pub use compliance::{Compliance, Rough};
 pub use coulomb::Coulomb;
+pub use rate_and_state::{Evolution, RateAndState, RateAndStateKeys};
 pub use scheduled::{Schedule, Scheduled};
 pub use tied::Tied;
 pub use tresca::Tresca;
@@ -75,6 +77,8 @@ pub struct LawPoint {
     pub duration: f64,
     /// The largest [`opening`](Law::opening) of the states that were accepted.
     pub opened: f64,
+    /// What the law remembers of the last state that was accepted; 0 at the start.
+    pub remembered: f64,
     /// Slip of all increments before this one, along the axes.
     pub slipped: [f64; 2],
 }
@@ -148,6 +152,17 @@ pub trait Law: std::fmt::Debug + Send + Sync {
     fn opening(&self, trial: [f64; 3], point: &LawPoint) -> f64 {
         let _ = (trial, point);
         0.0
+    }
+
+    /// Whether friction depends on more than [`opening`](Law::opening) of what was before.
+    fn has_state(&self) -> bool {
+        false
+    }
+
+    /// What it remembers of a state with a trial and its traction.
+    fn remember(&self, trial: [f64; 3], traction: [f64; 3], point: &LawPoint) -> f64 {
+        let _ = (trial, traction);
+        point.remembered
     }
 
     /// The pressure by the gap, of rough surfaces.
@@ -270,6 +285,12 @@ impl<L: Law + ?Sized> Law for std::sync::Arc<L> {
     }
     fn opening(&self, trial: [f64; 3], point: &LawPoint) -> f64 {
         (**self).opening(trial, point)
+    }
+    fn has_state(&self) -> bool {
+        (**self).has_state()
+    }
+    fn remember(&self, trial: [f64; 3], traction: [f64; 3], point: &LawPoint) -> f64 {
+        (**self).remember(trial, traction, point)
     }
     fn compliance(&self) -> Option<Compliance> {
         (**self).compliance()

@@ -166,6 +166,110 @@ proptest! {
     }
 }
 
+fn rate_and_state(evolution: Evolution, a: f64, b: f64) -> Result<RateAndState, LawError> {
+    RateAndState::new(RateAndStateKeys { mu: 0.6, a, b, velocity: 1e-3, distance: 0.02, evolution, state: 20.0 })
+}
+
+/// Friction is that of the velocity and of the state at the end, with derivatives of second order; steady slip has the steady
+/// friction, whatever the increments.
+#[test]
+fn rate_and_state_friction_is_that_of_its_velocity() {
+    let p = 1.3;
+    for evolution in [Evolution::Aging, Evolution::Slip] {
+        let law = rate_and_state(evolution, 0.01, 0.015).unwrap();
+        for (rate, duration, remembered) in [(40.0, 0.5, 0.0), (40.0, 3.0, -1.2), (900.0, 20.0, 0.4)] {
+            let at =
+                |z: [f64; 3]| law.traction(z, &LawPoint { per_gap: rate, duration, remembered, ..LawPoint::default() });
+            for trial in [[0.05, -0.02], [0.6, 0.3], [0.5, -1.2], [-4.0, 3.0]] {
+                let z = [p, trial[0], trial[1]];
+                let found = at(z);
+                let [_, t1, t2] = found.traction;
+                let velocity = (trial[0] - t1).hypot(trial[1] - t2) / (rate * duration);
+                if velocity > 1e-12 {
+                    let known = p * law.coefficient(remembered, velocity, duration)[0];
+                    assert!((t1.hypot(t2) - known).abs() < 1e-4 * p, "{evolution:?} {rate} {trial:?}: {known}");
+                }
+                for direction in [[0.3, 0.0, 0.0], [0.0, 0.8, -0.1], [0.2, 0.3, 0.5]] {
+                    let errors = [4e-4, 2e-4].map(|h| {
+                        let moved = at(std::array::from_fn(|k| z[k] + h * direction[k])).traction;
+                        let linear: [f64; 3] = std::array::from_fn(|r| {
+                            found.traction[r] + h * (0..3).map(|c| found.derivative[r][c] * direction[c]).sum::<f64>()
+                        });
+                        distance(&moved, &linear)
+                    });
+                    assert!(of_second_order(errors), "{evolution:?} {rate} {trial:?} along {direction:?}: {errors:?}");
+                }
+            }
+        }
+        let mut remembered = 0.0;
+        for velocity in [1e-3, 1e-2] {
+            (0..40).for_each(|_| remembered = law.state(remembered, velocity, 10.0)[0]);
+            let steady = 0.6 + (0.01 - 0.015) * f64::ln(velocity / 1e-3);
+            let found = law.coefficient(remembered, velocity, 10.0)[0];
+            assert!((found - steady).abs() < 1e-10, "{evolution:?}: {found} {steady}");
+        }
+    }
+    assert!(rate_and_state(Evolution::Slip, 0.0, 0.01).is_err());
+}
+
+/// A slider of one spring, drawn ten times faster than it slid: with increments it comes to what the differential equations give,
+/// in first order. A spring softer than `p (b - a)/D` runs away from a small disturbance, a stiffer one comes to rest.
+#[test]
+fn a_slider_on_a_spring_is_stable_where_theory_says() {
+    let (p, a, b, v0, d) = (1.0, 0.01, 0.015, 1e-3, 0.02);
+    for evolution in [Evolution::Aging, Evolution::Slip] {
+        let law = rate_and_state(evolution, a, b).unwrap();
+        // `k (drawn - x) = T` in increments: the trial has the stiffness of the spring.
+        let implicit = |k: f64, speed: f64, end: f64, n: usize| {
+            let (mut x, mut drawn, mut remembered) = (0.0, 0.6 * p / k, 0.0);
+            let duration = end / n as f64;
+            let (mut velocity, mut fastest) = (v0, 0.0f64);
+            for _ in 0..n {
+                drawn += speed * duration;
+                let point = LawPoint { per_gap: k, duration, remembered, ..LawPoint::default() };
+                let trial = [p, k * (drawn - x), 0.0];
+                let traction = law.traction(trial, &point).traction;
+                remembered = law.remember(trial, traction, &point);
+                let moved = drawn - traction[1] / k - x;
+                (x, velocity) = (x + moved, moved / duration);
+                fastest = fastest.max(velocity);
+            }
+            (k * (drawn - x), velocity, fastest)
+        };
+        let exact = |k: f64, speed: f64, end: f64| {
+            let speed_of = |tau: f64, theta: f64| {
+                2.0 * v0 * (tau / (a * p)).sinh() * (-(0.6 + b * (v0 * theta / d).ln()) / a).exp()
+            };
+            let rate = |[tau, theta]: [f64; 2]| {
+                let v = speed_of(tau, theta);
+                let omega = v * theta / d;
+                let of_state = if evolution == Evolution::Aging { 1.0 - omega } else { -omega * omega.ln() };
+                [k * (speed - v), of_state]
+            };
+            let (mut y, n) = ([0.6 * p, d / v0], 200_000);
+            let h = end / n as f64;
+            for _ in 0..n {
+                let plus = |k: [f64; 2], c: f64| [y[0] + c * h * k[0], y[1] + c * h * k[1]];
+                let k1 = rate(y);
+                let k2 = rate(plus(k1, 0.5));
+                let k3 = rate(plus(k2, 0.5));
+                let k4 = rate(plus(k3, 1.0));
+                y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+            }
+            y[0]
+        };
+        let critical = p * (b - a) / d;
+        let known = exact(3.0 * critical, 10.0 * v0, 3.0);
+        let errors = [1000, 2000].map(|n| (implicit(3.0 * critical, 10.0 * v0, 3.0, n).0 - known).abs());
+        assert!(errors[1] < 2e-5 && errors[0] / errors[1] > 1.8, "{evolution:?}: {errors:?} of {known}");
+        // A disturbance by 5 % of the velocity: it dies out, or grows.
+        let [(_, rests, stable), (_, _, unstable)] =
+            [1.3, 0.7].map(|share| implicit(share * critical, 1.05 * v0, 4000.0, 8000));
+        assert!((rests / (1.05 * v0) - 1.0).abs() < 1e-3, "{evolution:?}: {rests}");
+        assert!(stable < 1.3 * v0 && unstable > 3.0 * v0, "{evolution:?}: {stable} {unstable}");
+    }
+}
+
 /// The law of velocity holds for what it returns, with derivatives of second order from creep to slip.
 #[test]
 fn a_viscous_law_is_that_of_its_velocity() {

@@ -119,7 +119,7 @@ impl Writer<'_> {
     }
 
     /// The same of nodes, each in the first body that has it.
-    fn places_once(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
+    pub(super) fn places_once(&mut self, place: &Place) -> Result<Vec<On>, ImportError> {
         let (name, nodes) = match place {
             Place::NodeSet(name) => match self.deck.node_sets.get(name) {
                 Some((name, nodes)) => (name.to_string(), nodes.clone()),

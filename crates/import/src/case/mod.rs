@@ -6,6 +6,7 @@
 mod bodies;
 mod conditions;
 mod contacts;
+mod equations;
 mod interfaces;
 mod material;
 pub(crate) mod names;
@@ -64,6 +65,7 @@ impl<'a> Writer<'a> {
     fn text(mut self) -> Result<String, ImportError> {
         let supports = self.supports()?;
         let loads = self.loads()?;
+        let equations = self.equations()?;
         let contacts = self.contacts()?;
         let interfaces = self.interfaces() + &self.carried()?;
         let bodies = self.body_tables();
@@ -78,6 +80,7 @@ impl<'a> Writer<'a> {
         out.push_str(&bodies);
         out.push_str(&supports);
         out.push_str(&loads);
+        out.push_str(&equations);
         out.push_str(&contacts);
         out.push_str(&interfaces);
         for step in &deck.steps {

@@ -75,6 +75,11 @@ impl NodeHistories {
         self.list.entry(node).or_default().insert(direction, (target.to_string(), curve));
     }
 
+    /// Whether the history of a node and a direction begins after the start.
+    pub(super) fn begins_later(&self, node: u64, direction: usize) -> bool {
+        self.begins.contains_key(&(node, direction))
+    }
+
     /// Sets the time at which a history begins.
     pub(super) fn begin(&mut self, node: u64, direction: usize, time: f64) {
         if time > 0.0 {

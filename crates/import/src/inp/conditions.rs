@@ -32,36 +32,6 @@ impl Model {
         Ok(Change::Amplitude(points.iter().map(|[t, v]| [t - start, *v]).collect()))
     }
 
-    pub(super) fn equation(&mut self, card: &Card) -> Result<(), ImportError> {
-        let mut rest = card.data.iter();
-        while let Some(head) = rest.next() {
-            let count = card.whole(head, 0, "the number of terms")? as usize;
-            let mut terms: Vec<(u64, usize, f64)> = Vec::new();
-            while terms.len() < count {
-                let data = rest.next().ok_or_else(|| card.wrong(head, "terms are missing"))?;
-                for k in (0..data.fields.len()).step_by(3).filter(|k| data.fields.get(k + 2).is_some()) {
-                    let coefficient = card.required_number(data, k + 2, "a coefficient")?;
-                    let node = card.whole(data, k, "the number of a node")?;
-                    terms.push((node, card.whole(data, k + 1, "a direction")? as usize, coefficient));
-                }
-                if data.fields.len() < 3 {
-                    return Err(card.wrong(data, "expected node, direction, coefficient"));
-                }
-            }
-            match terms[..] {
-                [(a, d, p), (b, e, q)] if d == e && p == -q && (1..=3).contains(&d) => self.equal.join(d - 1, [a, b]),
-                _ => {
-                    return Err(card.wrong(
-                        head,
-                        "cannot be imported: only equal displacements of two nodes in the same direction exist here, such as \
-                         4,3,1.,3,3,-1.",
-                    ));
-                }
-            }
-        }
-        Ok(())
-    }
-
     fn renew(&mut self, card: &Card, what: Conditions) {
         if card.value("OP").is_some_and(|v| v.eq_ignore_ascii_case("NEW")) {
             self.histories.renew(what);

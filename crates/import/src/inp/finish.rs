@@ -54,6 +54,7 @@ impl Model {
             *self.deck.rigid.entry(material) = motion;
         }
         self.check_transformed()?;
+        self.deck.equations = self.equations()?;
         self.turn_forces();
         let tied = self.equal.apply(&mut self.histories.supports);
         let mut supports = self.histories.supports.supports(&self.deck, &self.transformed, None);

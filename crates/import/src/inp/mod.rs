@@ -4,6 +4,7 @@ mod boundary;
 mod card;
 mod conditions;
 mod contact;
+mod equation;
 mod finish;
 mod material;
 mod mesh;

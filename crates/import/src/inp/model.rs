@@ -2,6 +2,7 @@
 
 use super::boundary::EqualDisplacements;
 use super::card::Card;
+use super::equation::StatedEquation;
 use super::steps::Histories;
 use super::{material, refused};
 use crate::ImportError;
@@ -29,6 +30,8 @@ pub(super) struct Model {
     /// Axes of their own of nodes.
     pub(super) transformed: BTreeMap<u64, Axes>,
     pub(super) equal: EqualDisplacements,
+    /// Equations between displacements that are not equal.
+    pub(super) equations: Vec<StatedEquation>,
     pub(super) histories: Histories,
     pub(super) rigid_nodes: Vec<RigidNodes>,
     pub(super) in_step: bool,
@@ -58,6 +61,7 @@ impl Model {
             orientations: BTreeMap::new(),
             transformed: BTreeMap::new(),
             equal: EqualDisplacements::default(),
+            equations: Vec::new(),
             histories: Histories::default(),
             rigid_nodes: Vec::new(),
             in_step: false,

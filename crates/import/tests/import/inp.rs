@@ -150,6 +150,22 @@ fn equal_displacements_are_tied_and_included_files_are_read() {
     assert!(case::text(&deck, "deck.inp").unwrap().contains("tied = [false, false, true]"));
 }
 
+/// Unlike coefficients, along axes of their own, and the prescribed displacement of a node without elements.
+#[test]
+fn equations_become_constraints() {
+    let model = "*NODE\n99, 0, 0, 0\n*NSET, NSET=turned\n17\n*TRANSFORM, NSET=turned\n0, 1, 0, -1, 0, 0
+*EQUATION\n3\n15, 3, 1., 16, 3, -2.,\n99, 1, 4.\n2\n17, 1, 1., 15, 2, 3.\n*BOUNDARY\n99, 1";
+    let steps = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\n99, 1, 1, 0.5\n*END STEP";
+    let text = case_of("deck.inp", &cubes(model, steps));
+    for line in [
+        "    { on = \"Eall_2:node_16\", factor = [0.0, 0.0, -2.0] },",
+        "value = \"-2.0*t\"",
+        "    { on = \"Eall_2:node_17\", factor = [0.0, 1.0, 0.0] },",
+    ] {
+        assert!(text.lines().any(|l| l == line), "`{line}` is not in\n{text}");
+    }
+}
+
 #[test]
 fn laws_of_materials() {
     let law = |cards: &str| {
@@ -196,7 +212,13 @@ fn what_cannot_be_imported_is_named_with_its_line() {
             "1, S7",
             "*SURFACE: the element 1, a hexahedron, has the faces 1 to 6, not 7",
         ),
-        ("*EQUATION\n2\n15, 3, 1., 16, 3, -2.", STEP, "\n2", "*EQUATION: cannot be imported: only equal displacements"),
+        (
+            "*NODE\n99, 0, 0, 0\n*EQUATION\n2\n15, 3, 1., 99, 3, -2.",
+            STEP,
+            "\n",
+            "*EQUATION: the node 99 belongs to no element",
+        ),
+        ("*EQUATION\n2\n15, 3, 1., 16, 4, -2.", STEP, "15, 3, 1., 16", "*EQUATION: direction 4: valid are 1 to 3"),
     ] {
         let text = cubes(model, steps);
         let (line, message) = refused("wrong.inp", &text);

@@ -21,9 +21,12 @@
 //! Kirchhoff stress (Simo, *Comput. Methods Appl. Mech. Engrg.* 99 (1992) 61–112). With `A = F_p⁻¹` the trial is `F A`, and
 //! `A ← A exp(-sqrt(3/2) Δα n)`, which keeps the volume. Any rotation of the intermediate configuration gives the same stress.
 //!
+//! Kinematic hardening at finite strain needs a return of tensors: see `kinematic`.
+//!
 //! Stored is `μ ‖s/2μ‖² + H_k/3 ‖ε_p‖²`; dissipated is `∫ σ_y dα`, that is `(s - X):δε_p`.
 
 use super::hardening::Hardening;
+use super::kinematic::Increment;
 use super::principal::{Principal, response, stretches};
 use super::tensor::{Response, Tensor4, delta, flat, fourth};
 use nalgebra::{Matrix3, Vector3};
@@ -32,7 +35,7 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticPlastic {
     pub hardening: Hardening,
-    /// `H_k`; 0 at finite strain.
+    /// `H_k`.
     pub kinematic: f64,
     pub is_finite: bool,
 }
@@ -103,9 +106,16 @@ impl ElasticPlastic {
         let alpha = history[0];
         let a = Matrix3::from_fn(|i, j| history[1 + 3 * i + j]);
         let trial = f * a;
+        if self.kinematic > 0.0 {
+            let start = Increment { mu, kinematic: self.kinematic, hardening: &self.hardening, alpha, a };
+            let found = start.solve(&trial);
+            let history = [&[found.alpha], flat(&found.a).as_slice()].concat();
+            let dissipated = self.hardening.dissipated(alpha, found.alpha);
+            return Plastic { response: of_trial(&found.response, &a), history, dissipated };
+        }
         let mut flow = [0.0; 3];
         let mut increment = 0.0;
-        let of_trial = response(&trial, |h| {
+        let found = response(&trial, |h| {
             let mean = (h[0] + h[1] + h[2]) / 3.0;
             let s = h.map(|h| 2.0 * mu * (h - mean));
             let norm = s.iter().map(|s| s * s).sum::<f64>().sqrt();
@@ -122,13 +132,7 @@ impl ElasticPlastic {
             let energy = stress.iter().map(|t| t * t).sum::<f64>() / (4.0 * mu);
             Principal { energy, stress, tangent, secant: [[2.0 * mu * found.factor; 3]; 3] }
         });
-        // From `F A` to `F`: `δ(F A) = δF A`.
-        let turn: Tensor4 = Matrix3::identity().kronecker(&a.transpose());
-        let response = Response {
-            energy: of_trial.energy,
-            stress: turn.transpose() * of_trial.stress,
-            tangent: turn.transpose() * of_trial.tangent * turn,
-        };
+        let response = of_trial(&found, &a);
         let mut renewed = a;
         if increment > 0.0 {
             let directions = stretches(&trial).directions;
@@ -152,7 +156,14 @@ impl ElasticPlastic {
     }
 }
 
-fn deviator(m: &Matrix3<f64>) -> Matrix3<f64> {
+/// From a response in `F A` to that in `F`: `δ(F A) = δF A`.
+fn of_trial(found: &Response, a: &Matrix3<f64>) -> Response {
+    let turn: Tensor4 = Matrix3::identity().kronecker(&a.transpose());
+    let (stress, tangent) = (turn.transpose() * found.stress, turn.transpose() * found.tangent * turn);
+    Response { energy: found.energy, stress, tangent }
+}
+
+pub(super) fn deviator(m: &Matrix3<f64>) -> Matrix3<f64> {
     m - Matrix3::identity() * (m.trace() / 3.0)
 }
 

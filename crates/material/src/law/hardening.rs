@@ -67,8 +67,13 @@ impl Hardening {
 
     /// The yield stress at a plastic strain.
     pub fn stress(&self, strain: f64) -> f64 {
+        self.at(strain).0
+    }
+
+    /// The yield stress at a plastic strain, and its slope from there on.
+    pub fn at(&self, strain: f64) -> (f64, f64) {
         let piece = self.pieces().find(|[_, _, _, to]| strain < *to);
-        piece.map_or(f64::NAN, |[from, stress, slope, _]| stress + slope * (strain - from))
+        piece.map_or((f64::NAN, f64::NAN), |[from, stress, slope, _]| (stress + slope * (strain - from), slope))
     }
 
     /// The increment `Δ` of plastic strain with `trial - stiffness Δ = stress(strain + Δ)`, for a trial above the yield stress,

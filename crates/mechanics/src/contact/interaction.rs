@@ -211,7 +211,7 @@ impl Drawn for Contact {
 }
 
 /// Numbers of the memory of a site.
-const NUMBERS: usize = 21;
+const NUMBERS: usize = 22;
 
 fn numbers(((traction, history), memory): ((&[f64; 3], &PointHistory), &SiteMemory)) -> [f64; NUMBERS] {
     let mut out = [0.0; NUMBERS];
@@ -225,7 +225,8 @@ fn numbers(((traction, history), memory): ((&[f64; 3], &PointHistory), &SiteMemo
         out[13..16].copy_from_slice(stuck.on_master.as_slice());
     }
     (out[16], out[17]) = (history.opened, history.offset);
-    out[18..].copy_from_slice(&history.trial);
+    out[18..21].copy_from_slice(&history.trial);
+    out[21] = history.state;
     out
 }
 
@@ -239,5 +240,6 @@ fn memory(n: &[f64]) -> (([f64; 3], PointHistory), SiteMemory) {
             on_master: vector(13),
         }),
     };
-    (([n[0], n[1], n[2]], PointHistory { opened: n[16], offset: n[17], trial: [n[18], n[19], n[20]] }), memory)
+    let history = PointHistory { opened: n[16], offset: n[17], trial: [n[18], n[19], n[20]], state: n[21] };
+    (([n[0], n[1], n[2]], history), memory)
 }

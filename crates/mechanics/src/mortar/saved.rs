@@ -7,7 +7,7 @@ use crate::points::MaterialPoint;
 use signorini_geometry::Vector;
 
 /// Numbers of the memory of a node.
-const NUMBERS: usize = 13;
+const NUMBERS: usize = 14;
 /// Numbers of a matched point before its shares: face and point, face and point of the master, number of shares.
 const HEAD: usize = 9;
 
@@ -17,7 +17,7 @@ impl Mortar {
         let of_node = |(([p, t1, t2], h), m): ((&[f64; 3], &PointHistory), &NodeMemory)| {
             [
                 *p, *t1, *t2, m.slip[0], m.slip[1], m.along.x, m.along.y, m.along.z, h.opened, h.offset, h.trial[0],
-                h.trial[1], h.trial[2],
+                h.trial[1], h.trial[2], h.state,
             ]
         };
         let mut own: Vec<f64> =
@@ -59,7 +59,8 @@ impl Mortar {
         }
         let of = |n: &[f64]| {
             let memory = NodeMemory { slip: [n[3], n[4]], along: Vector::<3>::new(n[5], n[6], n[7]) };
-            (([n[0], n[1], n[2]], PointHistory { opened: n[8], offset: n[9], trial: [n[10], n[11], n[12]] }), memory)
+            let history = PointHistory { opened: n[8], offset: n[9], trial: [n[10], n[11], n[12]], state: n[13] };
+            (([n[0], n[1], n[2]], history), memory)
         };
         ((self.law.kept, self.law.history), self.memory) = nodes.chunks(NUMBERS).map(of).unzip();
         self.matched = matched;

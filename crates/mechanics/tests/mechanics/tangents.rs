@@ -68,13 +68,14 @@ fn check(
     state = random(&state, 0.01, seed, &system);
     system.accept(&state).unwrap();
     // Tractions come first in what is kept of a site.
+    let parts = if system.contacts[0].friction().is_some() { 3 } else { 1 };
     let mut history = system.contacts[0].history();
-    for site in history[0].chunks_mut(16) {
+    let numbers = history[0].len() / (state.multipliers.len() / parts);
+    for site in history[0].chunks_mut(numbers) {
         site[..3].copy_from_slice(&[0.8 + 0.1 * noise(seed), 0.1 * noise(seed), 0.1 * noise(seed)]);
     }
     system.contacts[0].restore(&history).unwrap();
     let mut state = random(&state, moved, seed, &system);
-    let parts = if system.contacts[0].friction().is_some() { 3 } else { 1 };
     for own in state.multipliers.chunks_mut(parts) {
         own[0] = 0.9 + 0.05 * noise(seed);
         own[1..].iter_mut().for_each(|t| *t *= 0.1);

@@ -85,11 +85,12 @@ fn set(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
 }
 
 /// The tables of names that a case gives, what one is called, and the keys of which each needs one at least.
-const NAMED: [(&str, &str, &[&str]); 9] = [
+const NAMED: [(&str, &str, &[&str]); 10] = [
     ("bodies", "body", &[]),
     ("supports", "support", &["on"]),
     ("loads", "load", &["on"]),
     ("contacts", "contact", &["between", "self_contact", "all"]),
+    ("constraints", "constraint", &["terms"]),
     ("paths", "path", &["from"]),
     ("winding", "winding", &["on"]),
     ("ropes", "rope", &["on"]),

@@ -130,6 +130,7 @@ impl Planner<'_> {
             ("supports", problem.supports.len()),
             ("loads", problem.loads.len()),
             ("contacts", problem.contacts.len()),
+            ("constraints", problem.constraints.len()),
             ("steps", problem.steps.len()),
         ];
         let (limits, output) = (&problem.limits, &problem.output);

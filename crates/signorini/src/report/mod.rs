@@ -165,6 +165,9 @@ pub struct StepReport {
     pub equilibrium_residual: Option<f64>,
     /// Force of each support on the body, by the name of the support.
     pub support_forces: BTreeMap<String, [f64; 3]>,
+    /// Force of each constraint on its nodes per unit of their factors, by the name of the constraint.
+    #[serde(default)]
+    pub constraint_forces: BTreeMap<String, f64>,
     /// Resultant of each load, by the name of the load.
     pub load_forces: BTreeMap<String, [f64; 3]>,
     /// Point about which moments are reported: the origin, or `output.moments_about`. Null if no moments are reported.

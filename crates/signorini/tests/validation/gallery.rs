@@ -30,7 +30,7 @@ mod cases {
     tests_of! { GALLERY, gives_its_expected_numbers:
         string axisymmetric snap_in fold ball blister flat_disc cosine_disc cosine_square tilted_floor drum two_floors
         active_set hertz hertz_sphere patch_test punch cylinder_on_block high_order_blocks torus ironing
-        cattaneo_mindlin incline roller wedge press_fit peel jkr ring seal snap_fit tubes groove capstan edge belt
+        cattaneo_mindlin incline roller wedge press_fit peel jkr ring seal snap_fit brinell tubes groove capstan edge belt
         elastic_pulley sphere_parallel crossing twist clasp knot hertz_cells hertz_published plate_holes ball_cells rubber_tube two_balls foot pore pore_discs
         lattice foam die
     }

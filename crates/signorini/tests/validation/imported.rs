@@ -101,6 +101,88 @@ fn a_bar_of_two_materials_is_tied() {
     assert!((end - stretch).abs() < 1e-12, "{end} instead of {stretch}");
 }
 
+/// Two bars without lateral strain whose ends are joined by a lever: the force `4` on the first one is carried by
+/// `k (1 + 2²)`, and the second moves twice as far, and by as much more as a node without elements is moved. In 1 and in 5³ cells
+/// a bar, which other solvers take.
+#[test]
+fn ends_are_joined_by_a_lever() {
+    for n in [1usize, 6] {
+        let (folder, text) = lever(n);
+        let found = summary(&text, &set(&[("output.probes.end", "[4, 1, 1]".to_string())]));
+        let step = last_step(&found);
+        // k = E = 1000: k u + 2 k (2 u - 0.001) = 4.
+        let first = (4.0 + 2.0) / 5000.0;
+        let [a, b] = ["BOT_A", "BOT_B"].map(|name| number(&step["support_forces"][name][2]));
+        assert!((a + 1000.0 * first).abs() < 1e-9, "{a}");
+        assert!((b + 1000.0 * (2.0 * first - 0.001)).abs() < 1e-9, "{b}");
+        let end = number(&step["probes"]["end"]["displacement"][2]);
+        assert!((end - (2.0 * first - 0.001)).abs() < 1e-13, "{end}");
+        let sum: f64 = step["constraint_forces"].as_object().expect("forces").values().map(number).sum();
+        assert!((sum - b).abs() < 1e-9, "{sum}");
+        drop(folder);
+    }
+    // Said twice, and said otherwise.
+    let (_folder, text) = lever(1);
+    let again = |value: &str| {
+        let terms = "{ on = \"A:node_8\", factor = [0, 0, 4] }, { on = \"B:node_108\", factor = [0, 0, -2] }";
+        format!("{text}\n[constraints.again]\nterms = [{terms}]\nvalue = {value}\n")
+    };
+    let found = summary(&again("\"0.002*t\""), &set(&[]));
+    let told = found["warnings"].to_string();
+    assert!(told.contains("the constraint `equation_4` follows from supports and other constraints"), "{told}");
+    let told = error(&again("0.1"));
+    assert_eq!(told.message, "the constraint `equation_4` contradicts `again`");
+    let told = error(&text.replace("A:node_8", "A:BOT"));
+    assert!(told.message.contains("`BOT` has 4 places that can be held"), "{}", told.message);
+}
+
+/// The case of a deck with two bars of `n³` cells, and equations `2 u_A - u_B = 0.001 t` between their ends.
+fn lever(n: usize) -> (TempDir, String) {
+    let count = (n + 1).pow(3);
+    let first = [1, 100 * n.pow(3) + 1];
+    let mut deck = "*NODE\n9999, 9, 9, 9\n".to_string();
+    let number = |at: [usize; 3]| at[0] + (n + 1) * (at[1] + (n + 1) * at[2]);
+    let (mut ends, mut bottom) = ([Vec::new(), Vec::new()], String::new());
+    for (body, first) in first.iter().enumerate() {
+        for k in 0..count {
+            let x = [k % (n + 1), k / (n + 1) % (n + 1), k / (n + 1).pow(2)].map(|i| i as f64 / n as f64);
+            deck += &format!("{}, {}, {}, {}\n", first + k, x[0] + 3.0 * body as f64, x[1], x[2]);
+            if x[2] == 1.0 {
+                ends[body].push(first + k);
+            }
+            if x[2] == 0.0 {
+                bottom += &format!("{}\n", first + k);
+            }
+        }
+    }
+    for (body, first) in first.iter().enumerate() {
+        deck += &format!("*ELEMENT, TYPE=C3D8, ELSET={}\n", ["A", "B"][body]);
+        for e in 0..n.pow(3) {
+            let at = [e % n, e / n % n, e / n.pow(2)];
+            let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+            let nodes = corners.map(|c| (first + number([at[0] + c[0], at[1] + c[1], at[2] + c[2]])).to_string());
+            deck += &format!("{}, {}\n", first + e, nodes.join(", "));
+        }
+    }
+    deck += &format!("*NSET, NSET=BOT\n{bottom}*NSET, NSET=TOP\n");
+    ends[0].iter().for_each(|node| deck += &format!("{node}\n"));
+    deck += "*SURFACE, NAME=END\nA, S2\n";
+    deck += "*MATERIAL, NAME=EL\n*ELASTIC\n1000, 0\n*SOLID SECTION, ELSET=A, MATERIAL=EL\n*SOLID SECTION, ELSET=B, MATERIAL=EL\n";
+    deck += "*EQUATION\n";
+    for (a, b) in ends[0].iter().zip(&ends[1]) {
+        deck += &format!("3\n{a}, 3, 2., {b}, 3, -1., 9999, 3, -1.\n");
+    }
+    let faces: String = (n * n * (n - 1)..n.pow(3)).map(|e| format!("{}, P2, -4\n", e + 1)).collect();
+    deck += &format!(
+        "*BOUNDARY\nBOT, 1, 3\n*STEP\n*STATIC\n0.5, 1.\n*BOUNDARY\n9999, 3, 3, 0.001\n*DLOAD\n{faces}*END STEP\n"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("lever.inp");
+    std::fs::write(&path, deck).expect("a deck");
+    let case = case_of(&path);
+    (folder, case)
+}
+
 /// Keys of `mesh.file` that do not fit its file are told at their place.
 #[test]
 fn wrong_groups_of_decks_are_told() {

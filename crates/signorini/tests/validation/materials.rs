@@ -366,9 +366,9 @@ fn materials_that_are_none_are_told() {
         (
             "plane_strain",
             "finite",
-            "elastic_plastic = { youngs_modulus = 1, poissons_ratio = 0.3, yield_stress = 1, kinematic_hardening = 1 }",
+            "elastic_plastic = { youngs_modulus = 1, poissons_ratio = 0.3, yield_stress = 1, kinematic_hardening = -1 }",
             "kinematic_hardening",
-            "small strain",
+            "must not be negative",
         ),
     ] {
         let found = error(&case(space, strain, material));

@@ -363,3 +363,40 @@ fn a_ring_by_a_map_is_closed() {
     let force = (0..2).map(|k| number(&fit["force"][k]).abs()).fold(0.0, f64::max);
     assert!(force < 1e-6 * exact * 60.0, "{force}");
 }
+
+/// Two quarters of rings of NURBS with unlike cells and degrees, glued on their common circle: displacements of Lamé.
+#[test]
+fn unlike_patches_of_nurbs_are_tied() {
+    let ring = |name: &str, [a, b]: [f64; 2], cells: [usize; 2], degree: usize| {
+        format!(
+            "[bodies.{name}.solid]
+mesh.nurbs.degree = [2, 1]
+mesh.nurbs.knots = [[0, 0, 0, 1, 1, 1], [0, 0, 1, 1]]
+mesh.nurbs.points = [[0, {a}], [{a}, {a}], [{a}, 0], [0, {b}], [{b}, {b}], [{b}, 0]]
+mesh.nurbs.weights = [1, 0.7071067811865476, 1, 1, 0.7071067811865476, 1]
+mesh.nurbs.cells = {cells:?}
+degree = {degree}
+material.linear_elastic = {{ youngs_modulus = 1, poissons_ratio = 0.3 }}
+[supports.{name}_x]
+on = \"{name}:left\"
+displacement = [0, \"free\"]
+[supports.{name}_y]
+on = \"{name}:right\"
+displacement = [\"free\", 0]
+"
+        )
+    };
+    let case = format!(
+        "space = \"plane_strain\"\n{}{}[loads.p]\non = \"inner:bottom\"\npressure = 0.01\n[contacts.weld]
+between = [\"inner:top\", \"outer:bottom\"]\ntied = true
+[output.probes]\nat_1 = [1, 0]\nat_1_5 = [1.5, 0]\nat_2 = [2, 0]\n",
+        ring("inner", [1.0, 1.5], [7, 4], 2),
+        ring("outer", [1.5, 2.0], [5, 3], 3)
+    );
+    let found = summary(&case, &set(&[]));
+    for (name, r) in [("at_1", 1.0), ("at_1_5", 1.5), ("at_2", 2.0)] {
+        let exact = 0.01 / 3.0 * 1.3 * (0.4 * r + 4.0 / r);
+        let moved = number(&last_step(&found)["probes"][name]["displacement"][0]);
+        assert!((moved / exact - 1.0).abs() < 1e-4, "{name}: {moved}, not {exact}");
+    }
+}

@@ -1,13 +1,13 @@
 //! Of `admissible`.
 
 use signorini_mechanics::body::Constraint;
-use signorini_mechanics::system::Held;
+use signorini_mechanics::system::{Held, Holder};
 use signorini_mechanics::testing::Admissible;
 
 #[test]
 fn what_may_move_satisfies_the_equations_of_supports() {
     let held = |terms: &[(u32, f64)]| Held {
-        support: 0,
+        by: Holder::Support(0),
         constraint: Constraint { terms: terms.to_vec(), ..Constraint::default() },
     };
     let single = [held(&[(1, 1.0)])];

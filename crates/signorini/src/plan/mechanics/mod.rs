@@ -2,6 +2,7 @@
 
 mod axes;
 pub(crate) mod cells;
+mod constraints;
 pub(super) mod contacts;
 mod curves;
 mod fields;
@@ -224,6 +225,7 @@ impl Planner<'_> {
         }
         system.supports = self.system_supports(&numbers, &system, &wrong)?;
         system.supports.append(&mut axis);
+        system.constraints = self.linear_constraints(&numbers, &system, &wrong)?;
         let (loads, springs) = self.system_loads(&numbers, &system, &kinds, &wrong)?;
         system.loads = loads;
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
@@ -237,6 +239,7 @@ impl Planner<'_> {
             self.check_pieces(&pieces, &system)?;
             self.check_held(&system)?;
         }
+        self.tell_idle(&system, &mut warnings)?;
         if arc_lengths.iter().any(Option::is_some) {
             system.unstable = Unstable::Tell;
         }
@@ -255,7 +258,7 @@ impl Planner<'_> {
         if kinds.iter().any(|k| matches!(k, Kind::Solid | Kind::Cells)) {
             notes.push(size_of(problem, &system)?);
         }
-        if system.contacts.is_empty() && system.bodies.len() > 1 {
+        if system.contacts.is_empty() && system.constraints.is_empty() && system.bodies.len() > 1 {
             warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
         if problem.steps.iter().any(|s| s.events.is_some()) {
@@ -317,7 +320,8 @@ impl Planner<'_> {
             let supports = system.supports.iter().map(|support| &support.part);
             let springs = system.loads.iter().filter(|l| matches!(l.load, TimedLoad::Springs(_))).map(|l| &l.part);
             let contacts = system.contacts.iter().filter(|_| !own.touch).flat_map(|contact| contact.parts());
-            let parts = supports.chain(springs).chain(contacts).filter(|part| of_body(part));
+            let constraints = system.constraints.iter().flat_map(|c| c.terms.iter().map(|term| &term.part));
+            let parts = supports.chain(springs).chain(constraints).chain(contacts).filter(|part| of_body(part));
             if let Some(told) = own.loose(parts.map(|part| part.group.as_deref())) {
                 let place = match problem.bodies.get(&own.body) {
                     Some(Body::Solid(solid)) => self.key(&solid.mesh),

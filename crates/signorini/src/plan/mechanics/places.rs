@@ -111,6 +111,13 @@ impl Planner<'_> {
     /// Why a system cannot be assembled at its start, at the key that is to be changed.
     pub(super) fn unprepared(&self, error: &IncrementError) -> CaseError {
         let problem = self.problem;
+        if let IncrementError::Assembly(AssemblyError::ContradictedConstraint { constraint, .. }) = error
+            && let Some(key) = problem.constraints.get(constraint)
+        {
+            return problem
+                .error(key, error.to_string())
+                .help("leave it out, or give the value that follows from the others");
+        }
         let IncrementError::Assembly(AssemblyError::Contradiction { second, .. }) = error else {
             return problem.error(&problem.space, error.to_string());
         };

@@ -34,13 +34,9 @@ impl Planner<'_> {
                 .help("give rows [stress, plastic strain] that begin at a plastic strain of 0 and rise"),
         })?;
         let kinematic = modulus(&key.kinematic_hardening)?;
-        if let Some(value) = key.kinematic_hardening.as_ref().filter(|_| kinematic < 0.0 || finite && kinematic != 0.0)
-        {
-            let message = match kinematic < 0.0 {
-                true => format!("the modulus is {kinematic}: it must not be negative"),
-                false => "kinematic hardening is for small strain".to_string(),
-            };
-            return Err(problem.error(value, message).help("hardening = …  or  strain = \"small\""));
+        if let Some(value) = key.kinematic_hardening.as_ref().filter(|_| kinematic < 0.0) {
+            let message = format!("the modulus is {kinematic}: it must not be negative");
+            return Err(problem.error(value, message).help("hardening = …"));
         }
         let law = ElasticPlastic { hardening, kinematic, is_finite: finite };
         Ok((elastic, StressLaw::ElasticPlastic(law)).into())

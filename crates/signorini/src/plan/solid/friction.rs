@@ -2,9 +2,11 @@
 
 use crate::expression::{Expression, Scope};
 use crate::plan::planner::Planner;
-use crate::problem::units::{NONE, PRESSURE, TIME};
+use crate::problem::units::{LENGTH, NONE, PRESSURE, TIME};
 use crate::problem::{self, CaseError, Value};
-use signorini_contact::law::{Coulomb, Law, LawError, Scheduled, Tresca, Viscous};
+use signorini_contact::law::{
+    Coulomb, Evolution, Law, LawError, RateAndState, RateAndStateKeys, Scheduled, Tresca, Viscous,
+};
 
 /// Times of a step, beside its start, at which a coefficient that changes is checked.
 const SAMPLES: u32 = 20;
@@ -24,6 +26,7 @@ impl Planner<'_> {
                 let law = Viscous::new(mu, velocity).map_err(|e| self.not_negative(&key.mu, e))?;
                 return Ok(Box::new(law));
             }
+            problem::Friction::RateAndState(key) => return self.rate_and_state(key),
             problem::Friction::Coulomb(key) => key,
         };
         let list = &key.mu.0;
@@ -49,6 +52,30 @@ impl Planner<'_> {
             }
         };
         let law = Coulomb::orthotropic(mu).map_err(|e| self.not_negative(&list[0], e))?;
+        Ok(Box::new(law))
+    }
+
+    fn rate_and_state(&self, key: &problem::RateAndStateFriction) -> Result<Box<dyn Law>, CaseError> {
+        let [mu, b] = [&key.mu, &key.b].map(|value| {
+            let found = self.reader.number(value, NONE)?;
+            Coulomb::isotropic(found).map_err(|e| self.not_negative(value, e))?;
+            Ok::<f64, CaseError>(found)
+        });
+        let velocity = self.reader.positive(&key.velocity, [1, 0, -1])?;
+        let distance = self.reader.positive(&key.distance, LENGTH)?;
+        let keys = RateAndStateKeys {
+            mu: mu?,
+            a: self.reader.positive(&key.a, NONE)?,
+            b: b?,
+            velocity,
+            distance,
+            evolution: match key.evolution {
+                Some(problem::StateEvolution::Slip) => Evolution::Slip,
+                Some(problem::StateEvolution::Aging) | None => Evolution::Aging,
+            },
+            state: key.state.as_ref().map_or(Ok(distance / velocity), |v| self.reader.positive(v, TIME))?,
+        };
+        let law = RateAndState::new(keys).map_err(|e| self.not_negative(&key.mu, e))?;
         Ok(Box::new(law))
     }
 

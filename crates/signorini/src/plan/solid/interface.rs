@@ -22,7 +22,12 @@ impl Planner<'_> {
             ("wear", key.wear.as_ref().map(|k| self.key(k))),
         ];
         let mut stated = stated.iter().filter_map(|(name, at)| at.as_ref().map(|at| (name, at)));
-        if let (Some((first, _)), Some((second, at))) = (stated.next(), stated.next()) {
+        let (first, second) = (stated.next(), stated.next());
+        if let (Some(friction @ problem::Friction::RateAndState(_)), Some((other, _))) = (&key.friction, first) {
+            let message = format!("`friction.rate_and_state` and `{other}` in one contact");
+            return Err(self.problem.error(friction, message).help("leave one of them out"));
+        }
+        if let (Some((first, _)), Some((second, at))) = (first, second) {
             let message = format!("`{first}` and `{second}` in one contact");
             return Err(self.problem.error(at, message).help("a contact has one of them, with or without friction"));
         }
@@ -92,10 +97,12 @@ impl Planner<'_> {
 
     /// Refuses what curves, discs and membranes do not have.
     pub(in crate::plan) fn refuse_interface(&self, key: &problem::Contact, what: &str) -> Result<(), CaseError> {
+        let rate_and_state = key.friction.as_ref().filter(|f| matches!(f, problem::Friction::RateAndState(_)));
         let stated = [
             ("cohesion", key.cohesion.as_ref().map(|k| self.key(k))),
             ("compliance", key.compliance.as_ref().map(|k| self.key(k))),
             ("wear", key.wear.as_ref().map(|k| self.key(k))),
+            ("friction.rate_and_state", rate_and_state.map(|k| self.key(k))),
         ];
         match stated.into_iter().find_map(|(name, at)| at.map(|at| (name, at))) {
             Some((name, at)) => Err(self.problem.error(&at, format!("`{name}` {what}")).help(AT_POINTS)),

@@ -137,6 +137,10 @@ fn law_of(law: &dyn signorini_contact::Law, problem: &crate::problem::Problem, n
     let key =
         problem.contacts.iter().filter(|(key, _)| name.starts_with(key.as_str())).max_by_key(|(key, _)| key.len());
     let is_viscous = key.is_some_and(|(_, contact)| matches!(contact.friction, Some(Friction::Viscous(_))));
+    if law.has_state() {
+        // It grows with the velocity without a limit.
+        return Law::AtMost([f64::MAX.sqrt(); 2]);
+    }
     match law.per_pressure() {
         Some(mu) if is_viscous => Law::AtMost(mu),
         Some(mu) => Law::PerPressure(mu),

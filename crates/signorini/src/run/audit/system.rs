@@ -312,6 +312,19 @@ fn forces(
         let drives = moved.is_none_or(|m| m.norm() > 0.0);
         out.push(Acting { name: support.name.clone(), body, force: *force, moment, work, drives, reacts: true });
     }
+    for (constraint, multiplier) in system.constraints.iter().zip(&result.constraint_forces) {
+        for term in &constraint.terms {
+            let Ok([x, moved]) = term.place(&system.bodies, &state.bodies) else { continue };
+            let force = term.factor * *multiplier;
+            let moment = (plan.space != Stated::Axisymmetric).then(|| (x + moved).cross(&force));
+            let work = before.and_then(|(_, from)| {
+                let [_, was] = term.place(&system.bodies, &from.bodies).ok()?;
+                Some(mean_work(&earlier(out.len()), &force, &(moved - was)))
+            });
+            let (name, body) = (constraint.name.clone(), term.part.body);
+            out.push(Acting { name, body, force, moment, work, drives: false, reacts: true });
+        }
+    }
     // What a winch does, and where a rope runs through pulleys, is not told.
     let hauls = |k: usize| matches!(plan.head.problem.bodies.get(system.bodies[k].name()), Some(Key::Rope(r)) if r.winch.is_some() || r.pulleys.is_some());
     let force = Vector::<3>::zeros();

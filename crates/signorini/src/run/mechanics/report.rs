@@ -142,6 +142,9 @@ pub fn step_report(
         stability: result.stability.as_ref().map(|told| stability_report(system, told)),
         equilibrium_residual: Some(result.imbalance),
         support_forces: supports.iter().map(|(name, force)| (name.clone(), vector(force))).collect(),
+        constraint_forces: (system.constraints.iter().map(|c| c.name.clone()))
+            .zip(result.constraint_forces.iter().copied())
+            .collect(),
         load_forces: loads,
         moments_about: about.map(|x| vector(&x)),
         support_moments: (support_moments.iter().filter(|_| about.is_some()))

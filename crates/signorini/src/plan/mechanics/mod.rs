@@ -229,6 +229,7 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
+        self.check_restitution(&system)?;
         let SystemIncrements { times, arc_lengths, steps } = self.system_increments()?;
         let motion = self.motion(&mut system, &steps, &wrong)?;
         system.prepare().map_err(|e| self.unprepared(&e))?;
@@ -287,6 +288,18 @@ impl Planner<'_> {
             contacts,
             notes,
         })
+    }
+
+    /// Whether bodies that rebound by a coefficient are rigid.
+    fn check_restitution(&self, system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let stated = problem.contacts.values().find_map(|key| key.restitution.as_ref());
+        match stated {
+            Some(e) if !system.is_rigid() => Err(problem
+                .error(e, "a coefficient of restitution is for systems in which all that moves is rigid")
+                .help("leave `restitution` out: bodies that deform rebound by their elasticity")),
+            _ => Ok(()),
+        }
     }
 
     /// Ropes and beams lie in space.

@@ -202,4 +202,6 @@ dynamics = {{}}
         assert!(found.help.clone().unwrap_or_default().contains(help), "{motion} {contact}: {:?}", found.help);
         assert!(found.place.is_some(), "{motion} {contact}");
     }
+    let found = error(&case("density = 1", "").replace("center = [0, 0, 0.1]", "center = [0, 0, 0.09]"));
+    assert!(found.message.contains("starts 1.0000e-2 deep inside `floor`"), "{}", found.message);
 }

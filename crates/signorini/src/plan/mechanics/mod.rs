@@ -253,7 +253,7 @@ impl Planner<'_> {
         self.check_start(&system, &kinds, &contacts, &mut warnings)?;
         self.check_inside(&system)?;
         if motion.dynamics.first().is_some_and(Option::is_some) && system.is_rigid() {
-            self.check_overlap(&system)?;
+            self.check_apart(&system)?;
         }
         self.check_crossings(&system, &kinds, &contacts)?;
         self.tell_stretched(&system, &numbers, &mut warnings)?;
@@ -429,7 +429,7 @@ impl Planner<'_> {
     }
 
     /// Whether rigid bodies that move with inertia start outside of each other: nothing tells how fast an overlap would open.
-    fn check_overlap(&self, system: &System) -> Result<(), CaseError> {
+    fn check_apart(&self, system: &System) -> Result<(), CaseError> {
         let problem = self.problem;
         let mut start = system.start();
         system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(0.0, state));

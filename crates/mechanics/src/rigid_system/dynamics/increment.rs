@@ -20,6 +20,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const SHORT_FLIGHT: f64 = 1e-3;
 /// Velocity relative to what loads give in an increment that is rounding.
 const AT_REST: f64 = 1e-10;
+/// Impulse relative to the largest that is rounding.
+const NOTHING: f64 = 1e-14;
 /// Halvings of an increment, and steps in one.
 const MOST_HALVINGS: i32 = 20;
 const MOST_STEPS: usize = 20_000;
@@ -334,8 +336,10 @@ impl<'a, 'b> InTime<'a, 'b> {
         let mut at_end = self.motion.named(bodies, &vec![None; bodies.len()], &ids);
         let impulses = std::mem::take(&mut self.impulses);
         let touches = self.touches();
+        let largest = impulses.values().map(|own| own.normal).fold(0.0, f64::max);
         impulses
             .into_iter()
+            .filter(|(_, own)| own.normal > NOTHING * largest)
             .map(|(id, own)| {
                 let mut point = own.point;
                 if let Some(last) = at_end.remove(&id) {

@@ -147,6 +147,9 @@ fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
 /// Part of its radius that a curve may start deep inside of what it touches without a word.
 const DEEP: f64 = 0.1;
 
+/// Depth relative to the size of the bodies with which rigid bodies do not overlap.
+const OVERLAP: f64 = 1e-9;
+
 /// The name of what holds solids on the axis of rotation, which nobody stated.
 pub const AXIS_SUPPORT: &str = "axis";
 
@@ -231,6 +234,7 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
+        self.check_restitution(&system)?;
         let SystemIncrements { times, arc_lengths, steps } = self.system_increments()?;
         let motion = self.motion(&numbers, &mut system, &steps, &wrong, &mut warnings)?;
         system.prepare().map_err(|e| self.unprepared(&e))?;
@@ -251,6 +255,9 @@ impl Planner<'_> {
         }
         self.check_start(&system, &kinds, &contacts, &mut warnings)?;
         self.check_inside(&system)?;
+        if motion.dynamics.first().is_some_and(Option::is_some) && system.is_rigid() {
+            self.check_apart(&system)?;
+        }
         self.check_crossings(&system, &kinds, &contacts)?;
         self.tell_stretched(&system, &numbers, &mut warnings)?;
         notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
@@ -290,6 +297,18 @@ impl Planner<'_> {
             contacts,
             notes,
         })
+    }
+
+    /// Whether bodies that rebound by a coefficient are rigid.
+    fn check_restitution(&self, system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let stated = problem.contacts.values().find_map(|key| key.restitution.as_ref());
+        match stated {
+            Some(e) if !system.is_rigid() => Err(problem
+                .error(e, "a coefficient of restitution is for systems in which all that moves is rigid")
+                .help("leave `restitution` out: bodies that deform rebound by their elasticity")),
+            _ => Ok(()),
+        }
     }
 
     /// Ropes and beams lie in space.
@@ -411,6 +430,26 @@ impl Planner<'_> {
             }
             Err(error) => Err(problem.error(&problem.space, error.to_string())),
         }
+    }
+
+    /// Whether rigid bodies that move with inertia start outside of each other: nothing tells how fast an overlap would open.
+    fn check_apart(&self, system: &System) -> Result<(), CaseError> {
+        let problem = self.problem;
+        let mut start = system.start();
+        system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(0.0, state));
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let sites = system.sites(k, &start).map_err(|e| problem.error(&problem.space, e.to_string()))?;
+            let deepest = sites.iter().filter_map(|s| Some((s.gap?, s.x))).min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((gap, x)) = deepest.filter(|(gap, _)| *gap < -OVERLAP * system.size()) else { continue };
+            let [name, other] = contact.bodies().map(|b| system.bodies[b].name());
+            let place = problem.contacts.get(contact.name()).map_or(self.key(&problem.space), |key| self.key(key));
+            let at: Vec<String> = x.iter().map(|v| format!("{v:.4}")).collect();
+            let message = format!("`{name}` starts {:.4e} deep inside `{other}`, at ({})", -gap, at.join(", "));
+            return Err(problem
+                .error(&place, message)
+                .help("bodies that move with inertia start apart, or in touch: move one of them"));
+        }
+        Ok(())
     }
 
     /// A curve that starts inside of another body, or of another curve.

@@ -28,9 +28,6 @@ pub struct Dynamics {
     pub spectral_radius: Option<f64>,
     /// Damping by mass and stiffness; none if left out.
     pub damping: Option<RayleighDamping>,
-    /// Error of the displacements of an increment relative to the size of the bodies, by which increments are cut; they are as
-    /// stated if left out.
-    pub tolerance: Option<f64>,
 }
 
 /// Damping forces in proportion to the momentum of each point, and to the rate of the internal forces.

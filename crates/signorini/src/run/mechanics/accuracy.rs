@@ -139,6 +139,7 @@ fn last_step(mut model: MechanicsModel, progress: &mut dyn Progress) -> Option<S
         if last.is_some() {
             model.plan.system.accept(&model.state).ok()?;
         }
+        model.set_in_motion(index);
         last = Some((model.reach(index, [before, time], progress).ok()?.ok()?, time));
         before = time;
     }

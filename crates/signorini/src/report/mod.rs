@@ -262,7 +262,9 @@ pub struct CellsReport {
 /// How a body moves with inertia.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionReport {
+    /// Mass of the body.
     pub mass: f64,
+    /// Kinetic energy of the body.
     pub kinetic_energy: f64,
     /// Velocity of the centre of mass: the momentum over the mass.
     pub velocity: [f64; 3],

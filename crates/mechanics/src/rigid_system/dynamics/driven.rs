@@ -1,6 +1,6 @@
 //! What is prescribed in a step: poses of bodies, and what supports ask for, with their velocities by differences of second order.
 
-use crate::body::BodyState;
+use crate::body::{Body, BodyState};
 use crate::rigid_body::Pose;
 use crate::rigid_system::touching::Twists;
 use crate::rotation;
@@ -17,14 +17,14 @@ impl Driven {
     pub fn new(system: &System, bodies: &[BodyState], [from, to]: [f64; 2]) -> Self {
         let times = [from, 0.5 * (from + to), to];
         let poses = times.map(|time| {
-            let own = |(body, state): (&Box<dyn crate::body::Body>, &BodyState)| {
+            let own = |(body, state): (&dyn Body, &BodyState)| {
                 let mut state = state.clone();
                 (body.unknowns() == 0).then(|| {
                     body.prescribe(time, &mut state);
                     Pose::of(&state)
                 })
             };
-            system.bodies.iter().zip(bodies).map(own).collect()
+            system.bodies.iter().map(Box::as_ref).zip(bodies).map(own).collect()
         });
         Driven { times, poses }
     }

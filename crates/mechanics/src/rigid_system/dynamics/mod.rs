@@ -79,7 +79,7 @@ fn moving(motion: &Motion<'_>, masses: &Masses, state: &SystemState) -> Vec<Movi
     let system = motion.system;
     let matrix = masses.matrix(system, &state.bodies);
     let momenta = &matrix * DVector::from_column_slice(&state.velocities);
-    let of = |((body, own), first): ((&Box<dyn Body>, &BodyState), &u32)| {
+    let of = |((body, own), first): ((&dyn Body, &BodyState), &u32)| {
         let modes = body.rigid_modes(own);
         let own = *first as usize..*first as usize + body.unknowns();
         let along = |k: usize| modes[k].iter().zip(&momenta.as_slice()[own.clone()]).map(|(m, p)| m * p).sum::<f64>();
@@ -92,5 +92,5 @@ fn moving(motion: &Motion<'_>, masses: &Masses, state: &SystemState) -> Vec<Movi
             angular_momentum: Vector::<3>::from_fn(|i, _| along(3 + i)),
         }
     };
-    system.bodies.iter().zip(&state.bodies).zip(&motion.first).map(of).collect()
+    system.bodies.iter().map(Box::as_ref).zip(&state.bodies).zip(&motion.first).map(of).collect()
 }

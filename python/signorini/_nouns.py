@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'a215678e9a3f248d'
+SCHEMA = 'b8469919966e189c'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -204,15 +204,17 @@ class Beam(Noun):
     section: The shape of its section, or its stiffness.
     cells: Number of elements; 20 if left out.
     contact_points: Number of Gauss points in each element at which contact is tested; 4 if left out.
+    density: Mass per volume, of a section with a shape; no mass if left out.
     material: Material. Left out if the section gives the stiffness.
     model: With shear and torsion, or free of torsion. The latter is for yarns and nets: round sections, initially
         straight. `shear` if left out.
     orientation: A direction near the first axis of the section at the start of the path.
     radius: Radius used in contact; that of a circular section if left out.
+    velocity: Velocity along each axis at the start, as expressions of position; at rest if left out.
     """
 
     _key = 'beam'
-    _types = {'path': ('path', '<Path>'), 'section': ('section', '<Section>'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'material': ('material', '<Material>'), 'model': ('model', 'str'), 'orientation': ('orientation', '[Value]'), 'radius': ('radius', 'Value')}
+    _types = {'path': ('path', '<Path>'), 'section': ('section', '<Section>'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'density': ('density', 'Value'), 'material': ('material', '<Material>'), 'model': ('model', 'str'), 'orientation': ('orientation', '[Value]'), 'radius': ('radius', 'Value'), 'velocity': ('velocity', '[Value]')}
 
     def __init__(
         self,
@@ -221,19 +223,23 @@ class Beam(Noun):
         section: CircleSection | RectangleSection | SectionStiffness | Mapping[str, Any] | str,
         cells: Optional[int] = None,
         contact_points: Optional[int] = None,
+        density: Optional[Value] = None,
         material: Optional[LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str] = None,
         model: Optional[str] = None,
         orientation: Optional[Sequence[Value] | Array] = None,
         radius: Optional[Value] = None,
+        velocity: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.path = path
         self.section = section
         self.cells = cells
         self.contact_points = contact_points
+        self.density = density
         self.material = material
         self.model = model
         self.orientation = orientation
         self.radius = radius
+        self.velocity = velocity
 
 
 class BoxGeometry(Noun):
@@ -333,6 +339,7 @@ class Cells(Noun):
     material: The material of the body.
     alpha: Stiffness of the fictitious material outside the body, relative to that of the body; 1e-8 if left out.
     degree: Polynomial degree, 1 to 8; 3 if left out.
+    density: Mass per volume; no mass if left out.
     functions: Space of functions: all products of polynomials of the degree (`tensor`), or those of at most this
         total degree (`trunk`); `tensor` if left out.
     groups: Parts of the surface, by names of your own: where an expression of x, y and z holds, such as `z >
@@ -341,10 +348,11 @@ class Cells(Noun):
     integration: Quadrature of cut cells; `exact` if left out.
     islands: Treatment of pieces that are not connected to the largest one; `refuse` if left out.
     strain: Strain measure: `small` or `finite`; `small` if left out.
+    velocity: Velocity along each axis at the start, as expressions of position; at rest if left out.
     """
 
     _key = 'cells'
-    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str'), 'strain': ('strain', 'str')}
+    _types = {'geometry': ('geometry', '<Composed>|<Shape>'), 'mesh': ('mesh', 'CellsMesh'), 'material': ('material', '<Material>'), 'alpha': ('alpha', 'Value'), 'degree': ('degree', 'int'), 'density': ('density', 'Value'), 'functions': ('functions', 'str'), 'groups': ('groups', '{Value}'), 'integration': ('integration', '<CellIntegration>'), 'islands': ('islands', 'str'), 'strain': ('strain', 'str'), 'velocity': ('velocity', '[Value]')}
 
     def __init__(
         self,
@@ -354,22 +362,26 @@ class Cells(Noun):
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         alpha: Optional[Value] = None,
         degree: Optional[int] = None,
+        density: Optional[Value] = None,
         functions: Optional[str] = None,
         groups: Optional[Mapping[str, Value]] = None,
         integration: Optional[ExactIntegration | SubCellIntegration | Mapping[str, Any] | str] = None,
         islands: Optional[str] = None,
         strain: Optional[str] = None,
+        velocity: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.geometry = geometry
         self.mesh = mesh
         self.material = material
         self.alpha = alpha
         self.degree = degree
+        self.density = density
         self.functions = functions
         self.groups = groups
         self.integration = integration
         self.islands = islands
         self.strain = strain
+        self.velocity = velocity
 
 
 class CellsGrid(Noun):
@@ -542,6 +554,7 @@ class Contact(Noun):
         penetrate each other.
     friction: Friction law; frictionless if left out.
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
+    restitution: Coefficient of restitution of rigid bodies that strike, from 0 to 1; 0 if left out.
     self_contact: The rope, beam or solid that is in contact with itself.
     sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
     tie_distance: Distance at the start up to which surfaces are tied, a length; a tenth of the size of a face of
@@ -552,7 +565,7 @@ class Contact(Noun):
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'restitution': ('restitution', 'float'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
 
     def __init__(
         self,
@@ -564,6 +577,7 @@ class Contact(Noun):
         compliance: Optional[ExponentialCompliance | PowerCompliance | Mapping[str, Any] | str] = None,
         friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | RateAndStateFriction | Mapping[str, Any] | str] = None,
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
+        restitution: Optional[float] = None,
         self_contact: Optional[str] = None,
         sliding: Optional[str] = None,
         tie_distance: Optional[Value] = None,
@@ -577,6 +591,7 @@ class Contact(Noun):
         self.compliance = compliance
         self.friction = friction
         self.method = method
+        self.restitution = restitution
         self.self_contact = self_contact
         self.sliding = sliding
         self.tie_distance = tie_distance
@@ -767,6 +782,27 @@ class DividedGmshMesh(Noun):
         self.rotate = rotate
         self.scale = scale
         self.translate = translate
+
+
+class Dynamics(Noun):
+    """Motion with inertia from the state at the end of the step before, or from the start.
+
+    damping: Damping by mass and stiffness; none if left out.
+    spectral_radius: Spectral radius at high frequencies of the generalised-α method, from 0 to 1; 1 if left out:
+        nothing is damped.
+    """
+
+    _key = None
+    _types = {'damping': ('damping', 'RayleighDamping'), 'spectral_radius': ('spectral_radius', 'float')}
+
+    def __init__(
+        self,
+        *,
+        damping: Optional[RayleighDamping | Mapping[str, Any]] = None,
+        spectral_radius: Optional[float] = None,
+    ) -> None:
+        self.damping = damping
+        self.spectral_radius = spectral_radius
 
 
 class ElasticPlastic(Noun):
@@ -981,18 +1017,37 @@ class FormulaPath(Noun):
 class FreeMotion(Noun):
     """A free rigid body: six unknowns in space, three in the plane.
 
-    center: Reference point for forces and rotations, lengths; the centre of the shape if left out.
+    angular_velocity: Angular velocity in radians per time at the start, along each axis or one value in the
+        plane; none if left out.
+    center: Reference point for forces and rotations, lengths; the centre of the shape if left out. With a mass it
+        is the centre of mass.
+    density: Mass per volume, from which mass, centre of mass and inertia of a closed shape follow; no mass if
+        left out.
+    inertia: Moments of inertia about the centre: one value of a ball or in the plane, or `[Jxx, Jyy, Jzz]` about
+        the axes. That of the shape with this mass if left out.
+    mass: Mass, in place of the density.
+    velocity: Velocity of the centre along each axis at the start; at rest if left out.
     """
 
     _key = 'free'
-    _types = {'center': ('center', '[Value]')}
+    _types = {'angular_velocity': ('angular_velocity', 'Value|[Value]'), 'center': ('center', '[Value]'), 'density': ('density', 'Value'), 'inertia': ('inertia', 'Value|[Value]'), 'mass': ('mass', 'Value'), 'velocity': ('velocity', '[Value]')}
 
     def __init__(
         self,
         *,
+        angular_velocity: Optional[Value | Sequence[Value] | Array] = None,
         center: Optional[Sequence[Value] | Array] = None,
+        density: Optional[Value] = None,
+        inertia: Optional[Value | Sequence[Value] | Array] = None,
+        mass: Optional[Value] = None,
+        velocity: Optional[Sequence[Value] | Array] = None,
     ) -> None:
+        self.angular_velocity = angular_velocity
         self.center = center
+        self.density = density
+        self.inertia = inertia
+        self.mass = mass
+        self.velocity = velocity
 
 
 class GaussPoint(Noun):
@@ -2191,6 +2246,26 @@ class RateAndStateFriction(Noun):
         self.state = state
 
 
+class RayleighDamping(Noun):
+    """Damping forces in proportion to the momentum of each point, and to the rate of the internal forces.
+
+    mass: Damping force per momentum, one over a time; 0 if left out.
+    stiffness: Damping force per rate of the elastic force, a time; 0 if left out.
+    """
+
+    _key = None
+    _types = {'mass': ('mass', 'Value'), 'stiffness': ('stiffness', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        mass: Optional[Value] = None,
+        stiffness: Optional[Value] = None,
+    ) -> None:
+        self.mass = mass
+        self.stiffness = stiffness
+
+
 class Rectangle(Noun):
     """A rectangle along the axes.
 
@@ -2331,17 +2406,19 @@ class Rope(Noun):
     contact_points: Number of Gauss points in each element of a smooth rope at which contact is tested; 4 if left
         out.
     continuity: Straight elements (`C0`) or smooth ones (`C1`); `C0` if left out.
+    mass_per_length: Mass per length; no mass if left out.
     pretension: Initial tension along the path, a force.
     pulleys: Points of the path, lengths, at which the rope runs through a pulley without friction. The tension is
         the same on both sides. Supports and loads name them `ROPE:pulleys`, or one by one `ROPE:pulley_1`. Only
         for straight elements.
     radius: Radius of the section, used in contact; 0 if left out.
     unstrained_length: Unstrained length; replaces `pretension`. The length of the path if both are left out.
+    velocity: Velocity along each axis at the start, as expressions of position; at rest if left out.
     winch: A winch at a supported end. Only for straight elements.
     """
 
     _key = 'rope'
-    _types = {'path': ('path', '<Path>'), 'stiffness': ('stiffness', 'Value'), 'bending_stiffness': ('bending_stiffness', 'Value'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'continuity': ('continuity', 'str'), 'pretension': ('pretension', 'Value'), 'pulleys': ('pulleys', '[[Value]]'), 'radius': ('radius', 'Value'), 'unstrained_length': ('unstrained_length', 'Value'), 'winch': ('winch', 'Winch')}
+    _types = {'path': ('path', '<Path>'), 'stiffness': ('stiffness', 'Value'), 'bending_stiffness': ('bending_stiffness', 'Value'), 'cells': ('cells', 'int'), 'contact_points': ('contact_points', 'int'), 'continuity': ('continuity', 'str'), 'mass_per_length': ('mass_per_length', 'Value'), 'pretension': ('pretension', 'Value'), 'pulleys': ('pulleys', '[[Value]]'), 'radius': ('radius', 'Value'), 'unstrained_length': ('unstrained_length', 'Value'), 'velocity': ('velocity', '[Value]'), 'winch': ('winch', 'Winch')}
 
     def __init__(
         self,
@@ -2352,10 +2429,12 @@ class Rope(Noun):
         cells: Optional[int] = None,
         contact_points: Optional[int] = None,
         continuity: Optional[str] = None,
+        mass_per_length: Optional[Value] = None,
         pretension: Optional[Value] = None,
         pulleys: Optional[Sequence[Sequence[Value] | Array] | Array] = None,
         radius: Optional[Value] = None,
         unstrained_length: Optional[Value] = None,
+        velocity: Optional[Sequence[Value] | Array] = None,
         winch: Optional[Winch | Mapping[str, Any]] = None,
     ) -> None:
         self.path = path
@@ -2364,10 +2443,12 @@ class Rope(Noun):
         self.cells = cells
         self.contact_points = contact_points
         self.continuity = continuity
+        self.mass_per_length = mass_per_length
         self.pretension = pretension
         self.pulleys = pulleys
         self.radius = radius
         self.unstrained_length = unstrained_length
+        self.velocity = velocity
         self.winch = winch
 
 
@@ -2493,12 +2574,14 @@ class Solid(Noun):
     material: The material of the body.
     degree: Polynomial degree: 1 to 8 on quadrilaterals and hexahedra, 1 or 2 on other cells. If left out, the
         order of the mesh. That of NURBS is raised without a change of their shape.
+    density: Mass per volume; no mass if left out.
     edges: Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
     strain: Strain measure: `small` or `finite`; `small` if left out.
+    velocity: Velocity along each axis at the start, as expressions of position; at rest if left out.
     """
 
     _key = 'solid'
-    _types = {'mesh': ('mesh', '<SolidMesh>'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'edges': ('edges', '{SolidEdge}'), 'strain': ('strain', 'str')}
+    _types = {'mesh': ('mesh', '<SolidMesh>'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'density': ('density', 'Value'), 'edges': ('edges', '{SolidEdge}'), 'strain': ('strain', 'str'), 'velocity': ('velocity', '[Value]')}
 
     def __init__(
         self,
@@ -2506,14 +2589,18 @@ class Solid(Noun):
         mesh: BoxMesh | GmshMesh | MeshFile | MeshArrays | NurbsMesh | Mapping[str, Any] | str,
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         degree: Optional[int] = None,
+        density: Optional[Value] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
         strain: Optional[str] = None,
+        velocity: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.mesh = mesh
         self.material = material
         self.degree = degree
+        self.density = density
         self.edges = edges
         self.strain = strain
+        self.velocity = velocity
 
 
 class SolidEdge(Noun):
@@ -2582,23 +2669,26 @@ class Step(Noun):
 
     to: Time at the end of the step.
     control: The path parameter of the step; the time if left out.
+    dynamics: Motion with inertia; equilibrium at each time if left out.
     events: Time tolerance to which changes of topology and jumps are located; not located if left out.
     increments: Number of increments; 1 if left out.
     """
 
     _key = None
-    _types = {'to': ('to', 'Value'), 'control': ('control', '<Control>'), 'events': ('events', 'float'), 'increments': ('increments', 'int')}
+    _types = {'to': ('to', 'Value'), 'control': ('control', '<Control>'), 'dynamics': ('dynamics', 'Dynamics'), 'events': ('events', 'float'), 'increments': ('increments', 'int')}
 
     def __init__(
         self,
         *,
         to: Value,
         control: Optional[Time | ArcLength | AreaControl | Mapping[str, Any] | str] = None,
+        dynamics: Optional[Dynamics | Mapping[str, Any]] = None,
         events: Optional[float] = None,
         increments: Optional[int] = None,
     ) -> None:
         self.to = to
         self.control = control
+        self.dynamics = dynamics
         self.events = events
         self.increments = increments
 
@@ -2999,6 +3089,8 @@ class ProblemKeys(Noun):
     fit: Parameters that `signorini fit` computes from measurements.
     frames: With `analysis = "wrapping"`: number of times in [0, 1]; 2 if left out.
     functions: Named functions of one argument, `t`, for use in expressions.
+    gravity: Acceleration of gravity along each axis, which acts on every body with a mass, also at rest;
+        expressions of t are possible. None if left out.
     limits: Limits of the computation.
     loads: Loads, by names of your own.
     output: What is written to disk.
@@ -3015,7 +3107,7 @@ class ProblemKeys(Noun):
     """
 
     _key = None
-    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
+    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'gravity': ('gravity', '[Value]'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
 
     def __init__(
         self,
@@ -3028,6 +3120,7 @@ class ProblemKeys(Noun):
         fit: Optional[Fit | Mapping[str, Any]] = None,
         frames: Optional[int] = None,
         functions: Optional[Mapping[str, TimeFunction | Mapping[str, Any]]] = None,
+        gravity: Optional[Sequence[Value] | Array] = None,
         limits: Optional[Limits | Mapping[str, Any]] = None,
         loads: Optional[Mapping[str, Load | Mapping[str, Any]]] = None,
         output: Optional[Output | Mapping[str, Any]] = None,
@@ -3050,6 +3143,7 @@ class ProblemKeys(Noun):
         self.fit = fit
         self.frames = frames
         self.functions = functions
+        self.gravity = gravity
         self.limits = limits
         self.loads = loads
         self.output = output
@@ -3065,4 +3159,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

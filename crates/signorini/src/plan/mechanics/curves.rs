@@ -70,6 +70,10 @@ impl Planner<'_> {
                 }
             }
             let chain = Chain::new(name, &sampled, stiffness, rest, radius).map_err(|e| refused(e.to_string()))?;
+            let chain = match self.mass_per_length(key)? {
+                Some(mass) => chain.with_mass(mass),
+                None => chain,
+            };
             let chain = self.wound(name, key, chain, wrong)?;
             return Ok((Box::new(chain), radius));
         }

@@ -163,6 +163,19 @@ impl Planner<'_> {
                 .error(stated, format!("a spectral radius of {stated} is not between 0 and 1"))
                 .help("1 damps nothing, 0.8 damps high frequencies a little, 0 at once"));
         }
+        // Free flight has nothing to damp, and impacts have their restitution.
+        if system.is_rigid()
+            && let Some(stated) = &key.damping
+        {
+            return Err(problem
+                .error(stated, "rigid bodies have no damping")
+                .help("leave `damping` out; give contacts a `restitution` below 1"));
+        }
+        if let Some(stated) = key.spectral_radius.as_ref().filter(|rho| **rho < 1.0 && system.is_rigid()) {
+            return Err(problem
+                .error(stated, "rigid bodies move by the midpoint rule, which damps nothing")
+                .help("leave it out"));
+        }
         let turns = |k: &usize| system.masses[*k].as_ref().is_some_and(|m| !m.spins.is_empty());
         if let Some(stated) = key.spectral_radius.as_ref().filter(|rho| **rho < 1.0)
             && let Some(body) = (0..system.bodies.len()).find(turns)

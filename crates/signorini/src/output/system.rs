@@ -41,6 +41,9 @@ pub struct CurveShown {
     pub unstrained_length: Option<f64>,
 }
 
+/// Half of the box around a body, in sizes: its centre may be off its middle.
+const WHOLE: f64 = 0.75;
+
 /// A rigid body where it is.
 #[derive(Clone)]
 pub struct RigidShown {
@@ -50,6 +53,16 @@ pub struct RigidShown {
     pub size: f64,
     pub centre: Vector<3>,
     pub is_free: bool,
+}
+
+impl RigidShown {
+    /// The box in which it is drawn: a free body that is not much larger than what is shown is drawn whole, and as fine as its size
+    /// asks for.
+    pub fn room(&self, shown: [Vector<3>; 2]) -> [Vector<3>; 2] {
+        let pad = Vector::<3>::repeat(WHOLE * self.size);
+        let fits = self.size < (shown[1] - shown[0]).norm();
+        if self.is_free && fits { [self.centre - pad, self.centre + pad] } else { shown }
+    }
 }
 
 /// A contact as it is shown: its tested points, and the surface between them where it has one.

@@ -113,7 +113,7 @@ pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
 pub fn rigid(shown: &SystemShown, room: [Vector<3>; 2]) -> Vec<Body> {
     let veil = if shown.is_of_solids() { THIN_VEIL } else { VEIL };
     let sheet = |body: &RigidShown| {
-        let (points, normals, triangles) = surface(body.gap.as_ref(), room);
+        let (points, normals, triangles) = surface(body.gap.as_ref(), body.room(room));
         let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
         let opacity = if body.is_free { 1.0 } else { veil };
         Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity }

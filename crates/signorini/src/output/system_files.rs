@@ -162,6 +162,9 @@ pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(Str
     if !in_space {
         room.iter_mut().for_each(|x| x.z = 0.0);
     }
-    let file = |body: &RigidShown| Ok((body.name.clone(), rigid::file(body.gap.as_ref(), room, in_space)?));
+    let file = |body: &RigidShown| {
+        let room = if in_space { body.room(room) } else { room };
+        Ok((body.name.clone(), rigid::file(body.gap.as_ref(), room, in_space)?))
+    };
     shown.rigid.iter().map(file).collect()
 }

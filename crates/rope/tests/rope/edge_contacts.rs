@@ -53,7 +53,7 @@ fn solid(
 fn rigid(shape: impl RigidShape + 'static) -> RigidBody {
     let centre = shape.centre();
     let motion = Motion::Prescribed(Arc::new(|_| RigidMotion::new(V::zeros(), V::zeros(), V::zeros())));
-    RigidBody { name: "rigid".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
+    RigidBody { name: "rigid".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0, mass: None }
 }
 
 fn sphere(centre: V, radius: f64) -> RigidBody {

@@ -23,7 +23,7 @@ fn data() -> Value {
 fn rigid(shape: Arc<dyn RigidShape>) -> RigidBody {
     let zero = V::zeros();
     let motion = Motion::Prescribed(Arc::new(move |_| RigidMotion::new(zero, zero, zero)));
-    RigidBody { name: "body".into(), centre: shape.centre(), shape, motion, sites: Vec::new(), size: 1.0 }
+    RigidBody { name: "body".into(), centre: shape.centre(), shape, motion, sites: Vec::new(), size: 1.0, mass: None }
 }
 
 /// The surface and the curve of a row, by a parameter from 0 to 1; none where the curve is no formula.

@@ -38,7 +38,7 @@ fn rigid(shape: impl RigidShape + 'static) -> RigidBody {
     let zero = V::zeros();
     let centre = shape.centre();
     let motion = Motion::Prescribed(Arc::new(move |_| RigidMotion::new(zero, zero, zero)));
-    RigidBody { name: "drum".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0 }
+    RigidBody { name: "drum".into(), shape: Arc::new(shape), motion, centre, sites: Vec::new(), size: 1.0, mass: None }
 }
 
 fn touch(system: &mut System, sampling: Sampling, enforcement: Enforcement, mu: Option<f64>) {
@@ -157,6 +157,7 @@ fn nothing_passes_through_in_one_increment() {
             centre: V::zeros(),
             sites: Vec::new(),
             size: 0.06,
+            mass: None,
         }
     };
     let system = |bar: RigidBody, ends: fn(f64) -> f64| {

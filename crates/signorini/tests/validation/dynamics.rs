@@ -122,7 +122,8 @@ fn a_block_falls_as_bodies_do() {
     // Angular momentum about the origin, `m c × v` with the centre (3.5, 1, -4.5).
     let angular: Vec<f64> = (0..3).map(|k| number(&last["motion"]["block"]["angular_momentum"][k])).collect();
     for (found, wanted) in angular.iter().zip([200.0 * -10.0, 200.0 * (-4.5 * 3.0 + 3.5 * 10.0), 200.0 * -3.0]) {
-        assert!((found - wanted).abs() < 1e-6, "{angular:?}");
+        // As far as forces of a stiff block are solved for.
+        assert!((found - wanted).abs() < 1e-9 * 4300.0, "{angular:?}");
     }
     // A force per velocity of 2 m slows it down as exp(-2 t), with order two.
     let of = |n: &str, more: &[(&str, &str)]| {
@@ -242,7 +243,7 @@ fn motion_that_cannot_be_is_refused_at_its_key() {
     let found = told("dynamics = {}", "dynamics = { spectral_radius = 1.5 }");
     assert!(found.contains("spectral radius of 1.5 is not between 0 and 1"), "{found}");
     let found = told("density = 100", "density = -1");
-    assert!(found.contains("density"), "{found}");
+    assert!(found.contains("it must be positive"), "{found}");
     let found = error(&BLOCK.replace("density = 100\n", "").replace("gravity = [0, 0, -10]\n", "")).to_string();
     assert!(found.contains("`block` has no density"), "{found}");
     let found = error(&BLOCK.replace("density = 100\n", "").replace("dynamics = {}", "")).to_string();

@@ -37,6 +37,8 @@ impl System {
         let many = moved().map(|b| b.many_unknowns()).min().flatten();
         let Some(many) = many else { return Ok(false) };
         let wanted = match self.solver {
+            // Their preconditioners know no mass.
+            _ if self.dynamics.is_some() => false,
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Automatic => moved().map(|b| b.unknowns()).sum::<usize>() > many,

@@ -54,6 +54,16 @@ pub fn plan(problem: &Problem) -> Result<Plan, CaseError> {
     if let Some(stability) = &problem.stability {
         return Err(problem.error(stability, "`stability` is not for membranes"));
     }
+    if let Some(dynamics) = problem.steps.iter().find_map(|step| step.dynamics.as_ref()) {
+        return Err(problem
+            .error(dynamics, "membranes have no mass: they are solved for equilibrium")
+            .help("leave `dynamics` out"));
+    }
+    if let Some(gravity) = &problem.gravity {
+        return Err(problem
+            .error(gravity, "membranes have no mass on which gravity could act")
+            .help("state the weight as a load per area"));
+    }
     match problem.space {
         Space::PlaneStrain | Space::PlaneStress | Space::ThreeD => Err(no_body_here(problem)),
         Space::Line | Space::Axisymmetric => Ok(Plan::Line(Planner::new(problem)?.membrane::<1>()?)),

@@ -131,6 +131,7 @@ impl Planner<'_> {
             ("loads", problem.loads.len()),
             ("contacts", problem.contacts.len()),
             ("constraints", problem.constraints.len()),
+            ("gravity", usize::from(problem.gravity.is_some())),
             ("steps", problem.steps.len()),
         ];
         let (limits, output) = (&problem.limits, &problem.output);

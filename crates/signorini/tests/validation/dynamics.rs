@@ -250,6 +250,8 @@ fn motion_that_cannot_be_is_refused_at_its_key() {
     assert!(found.contains("no body has a mass"), "{found}");
     let found = told("dynamics = {}", "dynamics = { damping.stiffness = -1 }");
     assert!(found.contains("damping of -1"), "{found}");
+    let membrane = super::example("string").to_string() + "\n[[steps]]\nto = 1\ndynamics = {}\n";
+    assert!(error(&membrane).to_string().contains("membranes have no mass"));
     let found = told("dynamics = {}", "dynamics = {}\ncontrol.arc_length = { size = 0.1 }");
     assert!(found.contains("in time"), "{found}");
 }

@@ -237,6 +237,8 @@ impl Planner<'_> {
         self.check_restitution(&system)?;
         let SystemIncrements { times, arc_lengths, steps } = self.system_increments()?;
         let motion = self.motion(&numbers, &mut system, &steps, &wrong, &mut warnings)?;
+        // What is told of the solver is told of steps in motion.
+        system.dynamics = motion.dynamics.iter().copied().flatten().next();
         system.prepare().map_err(|e| self.unprepared(&e))?;
         // Inertia holds what nothing else does.
         if motion.dynamics.first().is_none_or(Option::is_none) {

@@ -175,6 +175,7 @@ impl System {
                 self.end_time_step(step, &mut state)?;
                 let before = SystemState { time: from.time, multipliers: start.multipliers.clone(), ..from.clone() };
                 damped = self.damped(step, &before, &state)?;
+                result.dissipated = self.rubbed(step, &before, &result.sites)?;
                 self.restore_energy(step, &before, &mut state)?;
             }
             self.add_supports_in_motion(&state, &mut result)?;

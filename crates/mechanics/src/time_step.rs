@@ -19,15 +19,21 @@
 
 use crate::body::Contribution;
 use crate::dynamics::{Dynamics, Mass, Moving, SpinInertia};
+use crate::increment::UNBALANCED;
 use crate::increment_error::IncrementError;
 use crate::interaction::Assembler;
 use crate::points::Order;
 use crate::rotation;
+use crate::site_result::SiteResult;
 use crate::system::{AssemblyError, System, SystemState};
 use nalgebra::{Rotation3, UnitQuaternion};
+use signorini_contact::Status;
 use signorini_geometry::{Matrix, Vector};
 use signorini_solve::general::{Analysis, Entries};
 use std::collections::BTreeMap;
+
+/// Gap relative to the size of the bodies with which they touch.
+const TOUCHES: f64 = 1e-9;
 
 /// The weights of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +45,9 @@ pub struct Weights {
 }
 
 impl Weights {
+    /// The first order, with all forces at the end.
+    const BACKWARD: Weights = Weights { alpha_m: 0.0, alpha_f: 0.0, beta: 0.5, gamma: 1.0 };
+
     /// Those of a spectral radius at high frequencies.
     pub fn of_radius(rho: f64) -> Self {
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
@@ -171,20 +180,24 @@ impl System {
     }
 
     /// A state from which bodies begin to move: velocities as they are, and the accelerations that follow with what holds at a time
-    /// right after.
-    fn begin_to_move(&self, state: &mut SystemState, after: f64) -> Result<(), AssemblyError> {
+    /// right after; whether it is one of equilibrium.
+    fn begin_to_move(&self, state: &mut SystemState, after: f64) -> Result<bool, AssemblyError> {
         let (_, count) = self.numbering();
         if state.velocities.is_empty() {
             state.velocities = vec![0.0; count];
         }
-        let mut forces = self.forces(state)?;
+        let at = self.assemble(state, state.time, Order::First)?;
+        let largest = at.sizes[..count].iter().copied().fold(0.0, f64::max);
+        let mut forces = at.residual;
+        forces.truncate(count);
         let (single, _) = self.held(&state.bodies, after)?;
         single.iter().for_each(|h| forces[h.constraint.terms[0].0 as usize] = 0.0);
         let right: Vec<f64> = forces.iter().map(|f| -f).collect();
-        state.accelerations = self.by_mass(&self.whole_masses()?, &right)?;
+        state.accelerations = self.by_mass(&self.masses, &right)?;
         state.balancing.clone_from(&state.accelerations);
+        let is_balanced = forces.iter().all(|f| f.abs() <= UNBALANCED * largest);
         self.keep_forces(state, forces);
-        Ok(())
+        Ok(is_balanced)
     }
 
     /// Keeps the residual of equilibrium of a state for the next increment, without that of unknowns without a mass, which are in
@@ -193,6 +206,19 @@ impl System {
         let has = self.has_mass();
         forces.iter_mut().zip(has).filter(|(_, has)| !has).for_each(|(f, _)| *f = 0.0);
         state.forces = forces;
+    }
+
+    /// Whether something touches in a state that begins to move. What it carries then is not known before it moves: the first
+    /// increment takes all forces at its end.
+    fn touches(&self, state: &SystemState) -> Result<bool, IncrementError> {
+        let near = TOUCHES * self.size();
+        for contact in 0..self.contacts.len() {
+            let sites = self.sites_at_limit(contact, state)?;
+            if sites.iter().any(|site| site.gap.is_some_and(|gap| gap < near)) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// What supports prescribe of single unknowns all along an increment, relative to a state: at its start, middle and end.
@@ -213,9 +239,13 @@ impl System {
         from: &mut SystemState,
         time: f64,
         dynamics: &Dynamics,
-    ) -> Result<TimeStep, AssemblyError> {
+    ) -> Result<TimeStep, IncrementError> {
+        let mut weights = Weights::of_radius(dynamics.spectral_radius);
         if from.forces.is_empty() {
-            self.begin_to_move(from, 0.5 * (from.time + time))?;
+            let is_balanced = self.begin_to_move(from, 0.5 * (from.time + time))?;
+            if !is_balanced && self.touches(from)? {
+                weights = Weights::BACKWARD;
+            }
         }
         let (first, count) = self.numbering();
         let size = time - from.time;
@@ -228,7 +258,6 @@ impl System {
                 from.velocities[unknown as usize] = (4.0 * b - 3.0 * a - c) / size;
             }
         }
-        let weights = Weights::of_radius(dynamics.spectral_radius);
         let Weights { alpha_m, alpha_f, beta, .. } = weights;
         let over = 1.0 / (1.0 - alpha_f);
         let factor = (1.0 - alpha_m) * over / (beta * size * size);
@@ -247,7 +276,7 @@ impl System {
                     rotation: self.bodies[body].orientation(&from.bodies[body], own.unknowns),
                     velocity: Vector::<3>::from(at),
                 };
-                let momentum = turns.inertia(&turns.rotation) * turns.velocity * (-2.0 / size);
+                let momentum = turns.inertia(&turns.rotation) * turns.velocity * (-over / size);
                 turns.unknowns().iter().zip(momentum.iter()).for_each(|(u, m)| known[*u as usize] += m);
                 turning.push(turns);
             }
@@ -258,7 +287,7 @@ impl System {
             share += by_stiffness * over / size;
             for (body, (state, first)) in self.bodies.iter().zip(from.bodies.iter().zip(&first)) {
                 let mut out = Contribution::new(body.unknowns());
-                body.internal(state, Order::First, &mut out)?;
+                body.internal(state, Order::First, &mut out).map_err(AssemblyError::from)?;
                 let own = &mut known[*first as usize..*first as usize + body.unknowns()];
                 own.iter_mut().zip(&out.forces).for_each(|(k, f)| *k -= (share - 1.0) * f);
             }
@@ -399,6 +428,25 @@ impl System {
         Ok(())
     }
 
+    /// What friction of each contact took in an increment, by its mean.
+    pub(crate) fn rubbed(
+        &self,
+        step: &TimeStep,
+        start: &SystemState,
+        after: &[Vec<SiteResult>],
+    ) -> Result<Vec<f64>, IncrementError> {
+        let alpha_f = step.weights.alpha_f;
+        let of = |(k, after): (usize, &Vec<SiteResult>)| {
+            let before = self.sites(k, start)?;
+            let one = |(a, b): (&SiteResult, &SiteResult)| {
+                let mean = a.friction * alpha_f + b.friction * (1.0 - alpha_f);
+                if b.status == Status::Open { 0.0 } else { -b.weight * mean.dot(&b.increment) }
+            };
+            Ok(before.iter().zip(after).map(one).sum())
+        };
+        after.iter().enumerate().map(of).collect()
+    }
+
     /// The energy that damping, and the weights of the method, took from displacements in an increment, before energy is given back: of
     /// the equation times the displacements, all but the changes of the energies and the works of forces by their means.
     pub(crate) fn damped(
@@ -430,6 +478,7 @@ impl System {
                 for (before, after) in self.sites(k, start)?.iter().zip(&self.sites(k, state)?) {
                     if let (Some(from), Some(to)) = (before.gap, after.gap) {
                         damped += uneven * (after.pressure - before.pressure) * after.weight * (to - from);
+                        damped += uneven * (after.friction - before.friction).dot(&after.increment) * after.weight;
                     }
                 }
             }
@@ -519,10 +568,11 @@ impl TimeStep {
             let (psi, now) = turns.turned(system, state);
             let inertia = turns.inertia(&now);
             let momentum = inertia * turns.velocity_after(&psi, self.size);
-            let over = 2.0 / self.size;
+            let over = 1.0 / ((1.0 - self.weights.alpha_f) * self.size);
             turns.unknowns().iter().zip(momentum.iter()).for_each(|(u, m)| own[*u as usize] += over * m);
             if tangent.is_some() {
-                let change = inertia * rotation::of_spin(&psi).transpose() * over - momentum.cross_matrix();
+                let change =
+                    inertia * rotation::of_spin(&psi).transpose() * (2.0 / self.size) - momentum.cross_matrix();
                 blocks.push((turns.unknowns(), change * over));
             }
         }

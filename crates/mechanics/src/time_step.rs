@@ -541,13 +541,13 @@ impl System {
     /// Resultants of what acts on the unknowns, and their moments about the origin, by body.
     fn resultants_of(&self, state: &SystemState, forces: &[f64]) -> Vec<[Vector<3>; 2]> {
         let (first, _) = self.numbering();
-        let of = |(body, (own, first)): (&Box<dyn crate::body::Body>, (&crate::body::BodyState, &u32))| {
-            let modes = body.rigid_modes(own);
-            let forces = &forces[*first as usize..*first as usize + body.unknowns()];
-            let along = |k: usize| modes[k].iter().zip(forces).map(|(m, p)| m * p).sum::<f64>();
+        let of = |body: usize| {
+            let modes = self.bodies[body].rigid_modes(&state.bodies[body]);
+            let own = first[body] as usize..first[body] as usize + self.bodies[body].unknowns();
+            let along = |k: usize| modes[k].iter().zip(&forces[own.clone()]).map(|(m, p)| m * p).sum::<f64>();
             [Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))]
         };
-        self.bodies.iter().zip(state.bodies.iter().zip(&first)).map(of).collect()
+        (0..self.bodies.len()).map(of).collect()
     }
 }
 

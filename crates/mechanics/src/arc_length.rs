@@ -356,8 +356,7 @@ impl<'a> OnPath<'a> {
             let sizes = self.problem.system.row_sizes(&out, Stiffness::InTangent);
             self.problem.add_grain(&mut out, &held, &sizes);
         }
-        out.tangent.without_rows(|row| held[row as usize]);
-        (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));
+        out.tangent.hold(&held);
         let time = n as u32;
         by_time.iter().enumerate().filter(|(_, v)| **v != 0.0).for_each(|(k, v)| out.tangent.add(k as u32, time, *v));
         out.tangent.add(time, if component == count { time } else { component as u32 }, 1.0);

@@ -1,6 +1,7 @@
 //! Motion with inertia: what bodies weigh, and how they are to move.
 
 use crate::body::{Body, BodyState, PlaceError};
+use crate::rotation;
 use signorini_geometry::{Matrix, Vector};
 
 /// The mass of a body in its unknowns.
@@ -19,6 +20,23 @@ pub struct SpinInertia {
     pub unknowns: [u32; 3],
     /// Moments of inertia about the axes of space as the body starts.
     pub inertia: Matrix<3>,
+}
+
+impl SpinInertia {
+    /// About the axes of space after a rotation.
+    pub fn after(&self, rotation: &Matrix<3>) -> Matrix<3> {
+        rotation * self.inertia * rotation.transpose()
+    }
+}
+
+/// The angular velocity `2 θ/h - exp(θ) ω` after a rotation vector of a step of the midpoint rule, from that before.
+pub(crate) fn angular_velocity_after(theta: &Vector<3>, before: &Vector<3>, duration: f64) -> Vector<3> {
+    theta * (2.0 / duration) - rotation::turn(theta) * before
+}
+
+/// How the angular momentum at the end of such a step changes with the spin there.
+pub(crate) fn momentum_by_spin(theta: &Vector<3>, inertia: &Matrix<3>, after: &Vector<3>, duration: f64) -> Matrix<3> {
+    inertia * rotation::of_spin(theta).transpose() * (2.0 / duration) - (inertia * after).cross_matrix()
 }
 
 impl Mass {

@@ -352,8 +352,7 @@ impl Equations for Problem<'_> {
                 return Ok(step);
             }
         }
-        out.tangent.without_rows(|row| held[row as usize]);
-        (0..n).filter(|k| held[*k]).for_each(|k| out.tangent.add(k as u32, k as u32, 1.0));
+        out.tangent.hold(&held);
         let matrix = out.tangent.matrix(n);
         let sizes = matrix.row_sizes();
         if !self.is_free

@@ -4,7 +4,7 @@
 //! About both run the outer iterations of `augmentation`.
 
 use crate::body::UnstableMaterial;
-use crate::dynamics::{Dynamics, Moved};
+use crate::dynamics::Moved;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
@@ -150,43 +150,6 @@ impl System {
                 Err(error)
             }
         }
-    }
-
-    /// The state that bodies move to by a time.
-    fn solve_in_time(
-        &mut self,
-        from: &SystemState,
-        time: f64,
-        dynamics: &Dynamics,
-        report: &mut dyn FnMut(usize, f64) -> bool,
-    ) -> Result<(SystemState, IncrementResult), IncrementError> {
-        let kept = self.histories();
-        let mut from = from.clone();
-        let step = self.time_step(&mut from, time, dynamics)?;
-        let start = self.begin(&from, time)?;
-        self.step = Some(step);
-        let found =
-            self.outer(&start, time, report).and_then(|found| self.check_inside(&found.0, false).map(|()| found));
-        self.end();
-        let step = self.step.take();
-        let found = found.and_then(|(mut state, mut result)| {
-            let mut damped = 0.0;
-            if let Some(step) = &step {
-                self.end_time_step(step, &mut state)?;
-                let before = SystemState { time: from.time, multipliers: start.multipliers.clone(), ..from.clone() };
-                damped = self.damped(step, &before, &state)?;
-                result.dissipated = self.rubbed(step, &before, &result.sites)?;
-                self.restore_energy(step, &before, &mut state)?;
-            }
-            self.add_supports_in_motion(&state, &mut result)?;
-            let (before, after, inertia) = (self.moving(&from), self.moving(&state), self.inertia(&state));
-            result.moved = Some(Moved { before, after, inertia, damped });
-            Ok((state, result))
-        });
-        if found.is_err() {
-            self.put_back(&kept);
-        }
-        found
     }
 
     /// The state from which an increment to a time starts, what is prescribed brought there.
@@ -455,7 +418,7 @@ impl System {
     }
 
     /// The force and moment of each support on the bodies, of the residual at a state.
-    fn support_forces(&self, at: &Assembled, state: &SystemState) -> Vec<[Vector<3>; 2]> {
+    pub(crate) fn support_forces(&self, at: &Assembled, state: &SystemState) -> Vec<[Vector<3>; 2]> {
         let mut out = vec![[Vector::<3>::zeros(); 2]; self.supports.len()];
         for held in &at.single {
             let (unknown, factor) = held.constraint.terms[0];
@@ -466,15 +429,6 @@ impl System {
         }
         at.weakly_held.iter().for_each(|(support, force)| out[*support][0] += force);
         out
-    }
-
-    /// The forces of supports at the end of an increment in time, in place of those of the weighted equation.
-    fn add_supports_in_motion(&self, state: &SystemState, result: &mut IncrementResult) -> Result<(), IncrementError> {
-        let mut at = self.assemble(state, state.time, Order::First)?;
-        let (_, count) = self.numbering();
-        self.add_momenta(&state.balancing, 1.0, &mut at.residual[..count]);
-        result.support_forces = self.support_forces(&at, state);
-        Ok(())
     }
 
     /// What a state is reported as.

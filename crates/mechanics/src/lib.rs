@@ -9,8 +9,9 @@
 //! - `density`: how densely a body is tested against faces.
 //! - [`contact_law`]: law and enforcement at a point; [`contact`]: the sites of two sides.
 //! - [`interaction`]: what acts between bodies, as the system sees it.
-//! - [`dynamics`]: motion with inertia; [`time_step`]: one increment of it.
-//! - [`system`]: bodies, supports, loads and contacts, assembled; `linear_constraint`: equations between single nodes.
+//! - [`dynamics`]: masses and motion with inertia; `in_time`: an increment of it, by the equations of [`time_step`], with its
+//!   momenta (`moving`) and energy (`energy_in_time`).
+//! - [`system`]: bodies, supports, loads (`placed`) and contacts, assembled; `linear_constraint`: equations between single nodes.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
@@ -32,10 +33,12 @@ pub mod curve;
 mod density;
 pub mod dynamics;
 mod eliminated;
+mod energy_in_time;
 pub mod enforcement;
 mod equilibrium;
 mod free;
 mod homotopy;
+mod in_time;
 pub mod increment;
 pub mod increment_error;
 mod inside;
@@ -45,11 +48,13 @@ mod linear_bodies;
 mod linear_constraint;
 pub mod linear_solver;
 pub mod mortar;
+mod moving;
 mod nitsche;
 mod outer;
 pub mod pair;
 pub mod part;
 pub mod passage;
+mod placed;
 pub mod points;
 mod prepare;
 mod rest;
@@ -107,6 +112,7 @@ pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedL
 pub mod testing {
     pub use crate::admissible::Admissible;
     use crate::body::BodyState;
+    use crate::increment_error::IncrementError;
     use crate::points::Order;
     pub use crate::rotation::{between, of_spin, of_spin_change, spin, turn, unwrapped, whole_turns};
     use crate::system::{AssemblyError, System, SystemState};
@@ -120,6 +126,14 @@ pub mod testing {
     /// A state that is not predicted from others.
     pub fn state(bodies: Vec<BodyState>, multipliers: Vec<f64>, unknowns: usize) -> SystemState {
         SystemState { bodies, multipliers, travel: vec![0.0; unknowns], ..SystemState::default() }
+    }
+
+    /// Begins an increment in time: its equations are those that are assembled from now on.
+    pub fn in_time(system: &mut System, from: &mut SystemState, time: f64) -> Result<(), IncrementError> {
+        if let Some(dynamics) = system.dynamics {
+            system.step = Some(system.time_step(from, time, &dynamics)?);
+        }
+        Ok(())
     }
 
     /// The residual at a state at the start, and its tangent.

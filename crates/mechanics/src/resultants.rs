@@ -1,10 +1,16 @@
-//! Resultants of the supports on the bodies where they are: what each gives to the unknowns of its body, along the unit motions
-//! of that body.
+//! Resultants of forces on the unknowns of bodies where they are, along the unit motions of each body: of supports and others.
 
-use crate::body::{Contribution, Order};
+use crate::body::{Body, BodyState, Contribution, Order};
 use crate::increment_error::IncrementError;
 use crate::system::{AssemblyError, Held, System, SystemState};
 use signorini_geometry::Vector;
+
+/// The resultant of forces on the unknowns of a body in a state, and its moment about the origin.
+pub(crate) fn resultant(body: &dyn Body, state: &BodyState, forces: &[f64]) -> [Vector<3>; 2] {
+    let modes = body.rigid_modes(state);
+    let along = |mode: usize| forces.iter().zip(&modes[mode]).map(|(f, m)| f * m).sum::<f64>();
+    [Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))]
+}
 
 impl System {
     /// The moment of each support on its body about the origin, in a state at a time.
@@ -36,9 +42,7 @@ impl System {
                 .at(time, |hold| body.hold_weakly(on, hold, own, Order::First, &mut out))
                 .map_err(AssemblyError::from)?;
             forces.iter_mut().zip(&out.forces).for_each(|(f, weak)| *f -= weak);
-            let modes = body.rigid_modes(own);
-            let about = |axis: usize| forces.iter().zip(&modes[3 + axis]).map(|(f, m)| f * m).sum::<f64>();
-            Ok(Vector::<3>::from_fn(|axis, _| about(axis)))
+            Ok(resultant(body.as_ref(), own, &forces)[1])
         };
         self.supports.iter().zip(forces).map(moment).collect()
     }

@@ -2,6 +2,7 @@
 
 use crate::body::{BodyState, Contribution, PlaceError};
 use crate::points::Order;
+use crate::resultants::resultant;
 use crate::system::{System, SystemState};
 use signorini_geometry::Vector;
 
@@ -78,9 +79,7 @@ impl System {
     pub fn load_resultant(&self, load: usize, state: &SystemState, time: f64) -> Result<[Vector<3>; 2], PlaceError> {
         let body = self.loads[load].part.body;
         let forces = self.load_forces(load, state, time)?;
-        let modes = self.bodies[body].rigid_modes(&state.bodies[body]);
-        let along = |k: usize| forces.iter().zip(&modes[k]).map(|(f, m)| f * m).sum::<f64>();
-        Ok([Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))])
+        Ok(resultant(self.bodies[body].as_ref(), &state.bodies[body], &forces))
     }
 
     /// The force of a load at a time on each unknown of its body.

@@ -86,6 +86,12 @@ impl Entries {
         self.list.retain(|e| !is_left_out(e.0));
     }
 
+    /// Puts rows of the identity in place of those of unknowns that are held.
+    pub fn hold(&mut self, is_held: &[bool]) {
+        self.without_rows(|row| is_held[row as usize]);
+        (0..is_held.len()).filter(|k| is_held[*k]).for_each(|k| self.add(k as u32, k as u32, 1.0));
+    }
+
     /// The matrix of `n` unknowns, without blocks that are kept apart; entries at the same place are summed in the order in
     /// which they were added.
     pub fn matrix(&self, n: usize) -> Matrix {

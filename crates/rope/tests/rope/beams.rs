@@ -2,7 +2,7 @@
 
 use crate::common::{Found, Options, Search, Surroundings, V, clamp, load_body, newton};
 use signorini_geometry::Vector;
-use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Load, Order};
+use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Inertial, Load, Order};
 use signorini_rope::beam::Beam;
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
@@ -243,5 +243,31 @@ fn elastica_with_and_without_shear() {
             println!("{name} {alpha}: {:.5} {:.5}, {} iterations in four steps", at[2], 1.0 - at[0], iterations);
             assert!((at[2] - w).abs() < 2e-5 && (1.0 - at[0] - u).abs() < 2e-5);
         }
+    }
+}
+
+/// Mass and moments of a beam: of motions as a rigid body, and of the rotation of its sections.
+#[test]
+fn a_beam_has_the_mass_of_its_sections() {
+    let section = signorini_rope::section::Section::Rectangle { width: 0.2, height: 0.3 };
+    let (density, length, area) = (5.0, 2.0, 0.06);
+    let beam = straight(length, 3, section.stiffness(7.0, 0.3).unwrap()).with_mass(section.mass(density));
+    let found = beam.mass(&[]).unwrap().unwrap();
+    let modes = beam.rigid_modes(&beam.start());
+    let product = |a: &[f64], b: &[f64]| {
+        let mut momenta = vec![0.0; a.len()];
+        found.add_product(a, 1.0, &mut momenta);
+        momenta.iter().zip(b).map(|(p, v)| p * v).sum::<f64>()
+    };
+    let mass = density * area * length;
+    assert!((product(&modes[1], &modes[1]) - mass).abs() < 1e-13);
+    // Turning about y and z through the start.
+    assert!((product(&modes[4], &modes[4]) - mass * length * length / 3.0).abs() < 1e-13);
+    assert!((product(&modes[1], &modes[5]) - mass * length / 2.0).abs() < 1e-13);
+    // Width along y and height along z: moments of the area b h (h², b²)/12 about them.
+    let sum = found.spins.iter().map(|s| s.inertia).sum::<signorini_geometry::Matrix<3>>();
+    let wanted = [0.04 + 0.09, 0.09, 0.04].map(|square| mass * square / 12.0);
+    for (k, wanted) in wanted.into_iter().enumerate() {
+        assert!((sum[(k, k)] - wanted).abs() < 1e-14, "{sum}");
     }
 }

@@ -139,6 +139,31 @@ fn a_block_falls_as_bodies_do() {
     assert!((1.9..2.1).contains(&(coarse / fine).log2()), "{coarse} {fine}");
 }
 
+/// A disc in cut cells has the mass of its material, and falls as bodies do.
+#[test]
+fn a_disc_of_cells_falls() {
+    let case = r#"
+space = "plane_strain"
+gravity = [0, -10]
+[bodies.disc.cells]
+geometry.sphere = { center = [0.03, 0.01], radius = 0.4 }
+mesh.grid = { min = [-0.5, -0.5], max = [0.5, 0.5], cells = [6, 6] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 1e5, poissons_ratio = 0.3 }
+density = 7
+velocity = [2, 1]
+[[steps]]
+to = 0.5
+increments = 5
+dynamics = {}
+"#;
+    let found = summary(case, &set(&[]));
+    let last = last_step(&found);
+    let mass = number(&last["motion"]["disc"]["mass"]) / (7.0 * std::f64::consts::PI * 0.16);
+    assert!((mass - 1.0).abs() < 1e-6, "{mass}");
+    assert!((velocity(last, "disc", 0) - 2.0).abs() < 1e-8 && (velocity(last, "disc", 1) + 4.0).abs() < 1e-8);
+}
+
 /// A soft bed of springs below a stiff block: `x = v/ω sin ω t` with `ω² = k/m`, order two with and without damping by the method.
 #[test]
 fn a_block_swings_on_springs_with_order_two() {

@@ -1,6 +1,7 @@
 //! The tests of this crate as one program: each more would link all crates again.
 
 mod elasticity;
+mod mass;
 mod nodes;
 mod nurbs;
 mod pressed;

@@ -5,17 +5,17 @@
 //! `π = R J Rᵀ ω`: without moments momentum and energy stay (Simo & Wong 1991).
 
 use crate::body::{BodyState, PlaceError};
+use crate::dynamics::{SpinInertia, angular_velocity_after, momentum_by_spin};
 use crate::rotation;
 use crate::system::{AssemblyError, System};
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::{Matrix, Vector};
 
-/// The inertia of a body against rotation in space.
+/// The inertia of a body against rotation in space, and its spins among all unknowns.
 struct Spin {
     body: usize,
     at: [usize; 3],
-    /// About the axes of space as the body starts.
-    inertia: Matrix<3>,
+    own: SpinInertia,
 }
 
 /// Masses of all free bodies.
@@ -44,7 +44,7 @@ impl Masses {
         let (first, count) = system.numbering();
         let mut out = Masses { constant: DMatrix::zeros(count, count), spins: Vec::new() };
         for (k, (body, first)) in system.bodies.iter().zip(first).enumerate().filter(|(_, (b, _))| b.unknowns() > 0) {
-            let Some(mass) = body.mass(&[])? else {
+            let Some(mass) = system.masses.get(k).and_then(Option::as_ref) else {
                 let message = "it has no mass, so it cannot move with inertia".to_string();
                 return Err(PlaceError::Unsuitable { body: body.name().to_string(), message }.into());
             };
@@ -58,23 +58,21 @@ impl Masses {
             }
             for spin in &mass.spins {
                 let at = spin.unknowns.map(|u| first + u as usize);
-                out.spins.push(Spin { body: k, at, inertia: spin.inertia });
+                out.spins.push(Spin { body: k, at, own: spin.clone() });
             }
         }
         Ok(out)
     }
 
-    fn inertia(&self, system: &System, spin: &Spin, bodies: &[BodyState]) -> Matrix<3> {
-        let first = spin.at[0] as u32 - system.numbering().0[spin.body];
-        let turn = system.bodies[spin.body].orientation(&bodies[spin.body], [first, first + 1, first + 2]);
-        turn * spin.inertia * turn.transpose()
+    fn inertia(system: &System, spin: &Spin, bodies: &[BodyState]) -> Matrix<3> {
+        spin.own.after(&system.bodies[spin.body].orientation(&bodies[spin.body], spin.own.unknowns))
     }
 
     /// The mass matrix in a state.
     pub fn matrix(&self, system: &System, bodies: &[BodyState]) -> DMatrix<f64> {
         let mut out = self.constant.clone();
         for spin in &self.spins {
-            add_block(&mut out, &spin.at, &self.inertia(system, spin, bodies));
+            add_block(&mut out, &spin.at, &Self::inertia(system, spin, bodies));
         }
         out
     }
@@ -89,7 +87,7 @@ impl Masses {
         let mut out: Vec<f64> = step.iter().zip(before).map(|(s, v)| 2.0 * s / duration - v).collect();
         for spin in &self.spins {
             let theta = at(step, &spin.at);
-            let omega = theta * (2.0 / duration) - rotation::turn(&theta) * at(before, &spin.at);
+            let omega = angular_velocity_after(&theta, &at(before, &spin.at), duration);
             spin.at.iter().zip(omega.iter()).for_each(|(u, w)| out[*u] = *w);
         }
         out
@@ -109,9 +107,8 @@ impl Masses {
         let mut velocities = DMatrix::identity(n, n) * over;
         for spin in &self.spins {
             let theta = at(step, &spin.at);
-            let inertia = self.inertia(system, spin, bodies);
-            let by_spin =
-                inertia * rotation::of_spin(&theta).transpose() * over - (inertia * at(after, &spin.at)).cross_matrix();
+            let inertia = Self::inertia(system, spin, bodies);
+            let by_spin = momentum_by_spin(&theta, &inertia, &at(after, &spin.at), duration);
             let spun = rotation::spin(&theta);
             add_block(&mut momenta, &spin.at, &(by_spin * spun));
             let turned = rotation::turn(&theta) * at(before, &spin.at);

@@ -14,15 +14,12 @@ mod masses;
 mod step;
 
 use super::motion::{Motion, Stepped};
-use crate::body::{Body, BodyState};
-use crate::dynamics::{Moved, Moving};
+use crate::dynamics::Moved;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
 use crate::system::{System, SystemState};
 use increment::InTime;
 use masses::Masses;
-use nalgebra::DVector;
-use signorini_geometry::Vector;
 
 impl System {
     /// Rigid bodies at a time.
@@ -50,7 +47,7 @@ impl System {
         let found = Stepped { step: Vec::new(), bodies: Vec::new(), loaded, reactions: Vec::new(), iterations: 0 };
         let contacts = 0..motion.contacts.len();
         let mean = if duration > 0.0 { 1.0 / duration } else { 0.0 };
-        let (before, after) = (moving(&motion, &masses, &from), moving(&motion, &masses, &state));
+        let (before, after) = (self.moving(&from), self.moving(&state));
         let inertia = before.iter().zip(&after).map(|(a, b)| ((a.momentum - b.momentum) * mean, None)).collect();
         let result = IncrementResult {
             iterations: run.so_far.iterations,
@@ -72,25 +69,4 @@ impl System {
         }
         Ok((state, result))
     }
-}
-
-/// Kinetic energy and momenta of each body.
-fn moving(motion: &Motion<'_>, masses: &Masses, state: &SystemState) -> Vec<Moving> {
-    let system = motion.system;
-    let matrix = masses.matrix(system, &state.bodies);
-    let momenta = &matrix * DVector::from_column_slice(&state.velocities);
-    let of = |((body, own), first): ((&dyn Body, &BodyState), &u32)| {
-        let modes = body.rigid_modes(own);
-        let own = *first as usize..*first as usize + body.unknowns();
-        let along = |k: usize| modes[k].iter().zip(&momenta.as_slice()[own.clone()]).map(|(m, p)| m * p).sum::<f64>();
-        let twice: f64 = own.clone().map(|k| state.velocities[k] * momenta[k]).sum();
-        let displaced = |k: &usize| !motion.turns[*k];
-        Moving {
-            mass: own.clone().filter(displaced).map(|k| matrix[(k, k)]).fold(0.0, f64::max),
-            kinetic_energy: 0.5 * twice,
-            momentum: Vector::<3>::from_fn(|i, _| along(i)),
-            angular_momentum: Vector::<3>::from_fn(|i, _| along(3 + i)),
-        }
-    };
-    system.bodies.iter().map(Box::as_ref).zip(&state.bodies).zip(&motion.first).map(of).collect()
 }

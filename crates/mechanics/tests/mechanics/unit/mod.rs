@@ -6,3 +6,4 @@ mod rigid_dynamics;
 mod rigid_system;
 mod rotation;
 mod stability;
+mod time_step;

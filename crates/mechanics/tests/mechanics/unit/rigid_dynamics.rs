@@ -48,6 +48,7 @@ fn run(
     steps: usize,
     mut each: impl FnMut(&SystemState, &IncrementResult),
 ) -> SystemState {
+    system.weigh(true).unwrap();
     system.prepare().unwrap();
     let mut state = system.start();
     for k in 1..=steps {

@@ -7,7 +7,7 @@ use crate::problem::{self, Body, CaseError, List, Rope, Value};
 use crate::report::Warning;
 use signorini_geometry::Point;
 use signorini_mechanics::contact::Part;
-use signorini_mechanics::{Contribution, Dynamics, Load, Order, PlacedLoad, System, TimedLoad};
+use signorini_mechanics::{AssemblyError, Contribution, Dynamics, Load, Order, PlacedLoad, System, TimedLoad};
 use std::sync::Arc;
 
 /// The name of the load that gravity is.
@@ -20,13 +20,6 @@ pub struct Motion {
     pub dynamics: Vec<Option<Dynamics>>,
     /// Of all unknowns of the bodies where they begin to move.
     pub velocities: Vec<f64>,
-}
-
-impl Motion {
-    /// Whether a step moves with inertia.
-    pub fn is_any(&self) -> bool {
-        self.dynamics.iter().any(Option::is_some)
-    }
 }
 
 /// The density of a body, where its key gives one, and its velocity.
@@ -76,23 +69,13 @@ impl Planner<'_> {
         warnings: &mut Vec<Warning>,
     ) -> Result<Motion, CaseError> {
         let problem = self.problem;
-        if !self.moves() && problem.gravity.is_none() {
+        if !self.moves() {
             self.tell_unused(warnings);
-            return Ok(Motion::default());
+            if problem.gravity.is_none() {
+                return Ok(Motion::default());
+            }
         }
-        let touching = |body: usize| -> Vec<Option<String>> {
-            let parts = system.contacts.iter().flat_map(|contact| contact.parts());
-            parts.filter(|part| part.body == body && self.moves()).map(|part| part.group.clone()).collect()
-        };
-        let mut masses = Vec::with_capacity(system.bodies.len());
-        for (k, body) in system.bodies.iter().enumerate() {
-            let sides = touching(k);
-            let sides: Vec<Option<&str>> = sides.iter().map(Option::as_deref).collect();
-            masses.push(
-                body.mass(&sides).map_err(|e| self.unprepared(&signorini_mechanics::AssemblyError::from(e).into()))?,
-            );
-        }
-        system.masses = masses;
+        system.weigh(self.moves()).map_err(|e| self.unprepared(&e.into()))?;
         self.check_masses(numbers, system)?;
         self.add_gravity(system, wrong)?;
         let dynamics: Vec<Option<Dynamics>> =
@@ -228,14 +211,14 @@ impl Planner<'_> {
                 let field = self.vector_field(velocity, VELOCITY, wrong)?;
                 let load = Load::BodyForce(&|x| field(x, 0.0) * -density);
                 body.load(None, &load, &body.start(), Order::First, &mut out)
-                    .map_err(|e| self.unprepared(&signorini_mechanics::AssemblyError::from(e).into()))?;
+                    .map_err(|e| self.unprepared(&AssemblyError::from(e).into()))?;
             }
             momenta.extend(out.forces);
         }
         let mut out = if momenta.iter().all(|p| *p == 0.0) {
             momenta
         } else {
-            system.velocities_of(&momenta).map_err(|e| self.unprepared(&e.into()))?
+            system.velocities_of(&momenta).map_err(|e| self.unprepared(&e))?
         };
         // Rigid bodies know their velocities.
         let mut first = 0;

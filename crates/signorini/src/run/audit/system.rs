@@ -66,8 +66,10 @@ impl SystemAudit {
         let bodies = placements(plan, setting, &state.bodies);
         let mut contacts: Vec<Vec<Touch>> =
             result.sites.iter().map(|sites| sites.iter().map(touch).collect()).collect();
-        if result.moved.is_some() && plan.system.is_rigid() {
-            // Forces are means of an increment: what struck and has parted since is open.
+        // Forces of rigid bodies in motion are means of an increment in which momenta change.
+        let are_means = result.moved.is_some() && plan.system.is_rigid();
+        if are_means {
+            // What struck and has parted since is open.
             let apart = PARTED * plan.system.size();
             for touch in contacts.iter_mut().flatten().filter(|t| (t.x - t.foot).dot(&t.normal) > apart) {
                 (touch.is_closed, touch.pressure, touch.friction) = (false, 0.0, Vector::<3>::zeros());
@@ -86,8 +88,7 @@ impl SystemAudit {
             dissipated_in_bodies: result.dissipated_in_bodies.iter().sum(),
         };
         let mut found = audited(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
-        // Forces are means of an increment in which momenta change.
-        if result.moved.is_some() && plan.system.is_rigid() {
+        if are_means {
             let of_rest = [Check::Balance, Check::Path, Check::Uniqueness, Check::Tractions];
             found.findings.retain(|f| !of_rest.contains(&f.check));
             found.bounds.clear();

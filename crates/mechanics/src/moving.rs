@@ -1,0 +1,83 @@
+//! What moves: momenta, kinetic energy and inertia of bodies with a mass.
+
+use crate::dynamics::Moving;
+use crate::resultants::resultant;
+use crate::system::{System, SystemState};
+use signorini_geometry::Vector;
+
+impl System {
+    /// Momenta of displacements, times a factor.
+    pub(crate) fn add_momenta(&self, velocities: &[f64], factor: f64, out: &mut [f64]) {
+        let (first, _) = self.numbering();
+        for ((mass, body), first) in self.masses.iter().zip(&self.bodies).zip(first) {
+            let own = first as usize..first as usize + body.unknowns();
+            if let Some(mass) = mass {
+                mass.add_product(&velocities[own.clone()], factor, &mut out[own]);
+            }
+        }
+    }
+
+    /// Momenta of all unknowns in a state with these velocities.
+    pub(crate) fn momenta(&self, state: &SystemState, velocities: &[f64]) -> Vec<f64> {
+        let (first, count) = self.numbering();
+        let mut out = vec![0.0; count];
+        self.add_momenta(velocities, 1.0, &mut out);
+        for (body, (mass, first)) in self.masses.iter().zip(&first).enumerate() {
+            for own in mass.iter().flat_map(|m| &m.spins) {
+                let at = own.unknowns.map(|u| velocities[(first + u) as usize]);
+                let rotation = self.bodies[body].orientation(&state.bodies[body], own.unknowns);
+                let momentum = own.after(&rotation) * Vector::<3>::from(at);
+                own.unknowns.iter().zip(momentum.iter()).for_each(|(u, m)| out[(first + u) as usize] += m);
+            }
+        }
+        out
+    }
+
+    /// Kinetic energy and momenta of each body in a state; nothing of one at rest.
+    pub fn moving(&self, state: &SystemState) -> Vec<Moving> {
+        let (first, count) = self.numbering();
+        if state.velocities.len() != count || self.masses.is_empty() {
+            return vec![Moving::default(); self.bodies.len()];
+        }
+        let momenta = self.momenta(state, &state.velocities);
+        let resultants = self.resultants_of(state, &momenta);
+        let of = |(body, [momentum, angular_momentum]): (usize, [Vector<3>; 2])| {
+            let own = first[body] as usize..first[body] as usize + self.bodies[body].unknowns();
+            let twice: f64 = momenta[own.clone()].iter().zip(&state.velocities[own]).map(|(p, v)| p * v).sum();
+            Moving { mass: self.mass_of(body, state), kinetic_energy: 0.5 * twice, momentum, angular_momentum }
+        };
+        resultants.into_iter().enumerate().map(of).collect()
+    }
+
+    /// The mass of a body: of an axisymmetric one along the axis.
+    fn mass_of(&self, body: usize, state: &SystemState) -> f64 {
+        let Some(mass) = &self.masses[body] else { return 0.0 };
+        let modes = self.bodies[body].rigid_modes(&state.bodies[body]);
+        let of = |mode: &Vec<f64>| {
+            let mut momenta = vec![0.0; mode.len()];
+            mass.add_product(mode, 1.0, &mut momenta);
+            momenta.iter().zip(mode).map(|(p, v)| p * v).sum::<f64>()
+        };
+        modes[..3].iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// The resultants of inertia at the end of an increment, by body.
+    pub(crate) fn inertia(&self, state: &SystemState) -> Vec<(Vector<3>, Option<Vector<3>>)> {
+        let (_, count) = self.numbering();
+        let mut forces = vec![0.0; count];
+        self.add_momenta(&state.balancing, -1.0, &mut forces);
+        let turns = |body: usize| self.masses.get(body).and_then(Option::as_ref).is_some_and(|m| !m.spins.is_empty());
+        let all = self.resultants_of(state, &forces).into_iter().enumerate();
+        all.map(|(body, [force, moment])| (force, (!turns(body)).then_some(moment))).collect()
+    }
+
+    /// Resultants of what acts on the unknowns, and their moments about the origin, by body.
+    fn resultants_of(&self, state: &SystemState, forces: &[f64]) -> Vec<[Vector<3>; 2]> {
+        let (first, _) = self.numbering();
+        let of = |body: usize| {
+            let (own, first) = (self.bodies[body].as_ref(), first[body] as usize);
+            resultant(own, &state.bodies[body], &forces[first..first + own.unknowns()])
+        };
+        (0..self.bodies.len()).map(of).collect()
+    }
+}

@@ -5,6 +5,7 @@ use crate::energy_in_time::Solved;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
 use crate::system::{System, SystemState};
+use crate::time_step::TimeStep;
 
 impl System {
     /// The state that bodies move to by a time.
@@ -38,7 +39,7 @@ impl System {
     /// A state that was found, with its velocities and forces, and the energy that it has.
     fn in_motion(
         &self,
-        step: &crate::time_step::TimeStep,
+        step: &TimeStep,
         start: &SystemState,
         mut state: SystemState,
         mut result: IncrementResult,

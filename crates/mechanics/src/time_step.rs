@@ -17,7 +17,7 @@
 //! increment `ω₁ = 2 ψ/h - exp(ψ) ω₀`. Free rotations then conserve angular momentum and energy: `ψ·(π₁ - π₀) = 0` as `exp(ψ)`
 //! leaves `ψ` where it is (Simo and Wong 1991).
 
-use crate::body::{Body, Contribution, PlaceError};
+use crate::body::{Contribution, PlaceError};
 use crate::dynamics::{Dynamics, Mass, SpinInertia, angular_velocity_after, momentum_by_spin};
 use crate::increment::UNBALANCED;
 use crate::increment_error::IncrementError;
@@ -109,12 +109,11 @@ impl System {
     /// Sides that a body does not have.
     pub fn weigh(&mut self, moves: bool) -> Result<(), AssemblyError> {
         let parts: Vec<Part> = self.contacts.iter().filter(|_| moves).flat_map(|c| c.parts()).cloned().collect();
-        let of = |(k, body): (usize, &Box<dyn Body>)| {
-            let sides: Vec<Option<&str>> =
-                parts.iter().filter(|part| part.body == k).map(|part| part.group.as_deref()).collect();
-            body.mass(&sides)
+        let sides = |k: usize| -> Vec<Option<&str>> {
+            parts.iter().filter(|part| part.body == k).map(|part| part.group.as_deref()).collect()
         };
-        self.masses = self.bodies.iter().enumerate().map(of).collect::<Result<_, _>>()?;
+        self.masses =
+            (self.bodies.iter().enumerate()).map(|(k, body)| body.mass(&sides(k))).collect::<Result<_, _>>()?;
         Ok(())
     }
 

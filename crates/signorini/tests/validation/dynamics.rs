@@ -267,6 +267,8 @@ fn motion_that_cannot_be_is_refused_at_its_key() {
     let told = |from: &str, to: &str| error(&BLOCK.replace(from, to)).to_string();
     let found = told("dynamics = {}", "dynamics = { spectral_radius = 1.5 }");
     assert!(found.contains("spectral radius of 1.5 is not between 0 and 1"), "{found}");
+    let found = told("velocity = [3, 0, 0]", "velocity = [\"sqrt(-x - 1)\", 0, 0]");
+    assert!(found.contains("`bodies.block.solid.velocity[0]` is NaN"), "{found}");
     let found = told("density = 100", "density = -1");
     assert!(found.contains("it must be positive"), "{found}");
     let found = error(&BLOCK.replace("density = 100\n", "").replace("gravity = [0, 0, -10]\n", "")).to_string();

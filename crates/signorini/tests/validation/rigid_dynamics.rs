@@ -196,6 +196,7 @@ dynamics = {{}}
         ("mass = 1, inertia = [1, 1, 3]", "", "no body has the moments", "sum"),
         ("mass = 1, center = [0, 0, 0.05]", "", "centre of mass, at", "inertia"),
         ("density = 1", "restitution = 1.5", "not between 0 and 1", "rebound"),
+        ("density = 1", "wear = 1e-3", "a law or a method that rigid bodies in motion do not have", "wear"),
     ] {
         let found = error(&case(motion, contact));
         assert!(found.message.contains(message), "{motion} {contact}: {}", found.message);

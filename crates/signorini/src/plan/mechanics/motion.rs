@@ -146,6 +146,11 @@ impl Planner<'_> {
                 .error(stated, format!("a spectral radius of {stated} is not between 0 and 1"))
                 .help("1 damps nothing, 0.8 damps high frequencies a little, 0 at once"));
         }
+        if !system.is_rigid() && system.bodies.iter().all(|body| body.is_rigid()) {
+            return Err(problem
+                .error(key, "a contact has a law or a method that rigid bodies in motion do not have")
+                .help("Coulomb's friction without a viscous part, no compliance, no wear, and `method` left out"));
+        }
         // Free flight has nothing to damp, and impacts have their restitution.
         if system.is_rigid()
             && let Some(stated) = &key.damping
@@ -214,6 +219,9 @@ impl Planner<'_> {
                     .map_err(|e| self.unprepared(&AssemblyError::from(e).into()))?;
             }
             momenta.extend(out.forces);
+        }
+        if let Some(error) = wrong.take(self.problem) {
+            return Err(error);
         }
         let mut out = if momenta.iter().all(|p| *p == 0.0) {
             momenta

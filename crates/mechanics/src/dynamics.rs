@@ -2,7 +2,7 @@
 
 use crate::body::{Body, BodyState, PlaceError};
 use crate::rotation;
-use signorini_geometry::{Matrix, Vector};
+use signorini_geometry::{Matrix, Point, Vector};
 
 /// The mass of a body in its unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,6 +84,10 @@ pub trait Inertial {
         Vec::new()
     }
 
+    /// Angular velocities of sections that follow their line, of which the velocities are there; `turning` is how fast the material
+    /// at a point turns, for the rotation about the line itself.
+    fn turn_sections(&self, _velocities: &mut [f64], _turning: &dyn Fn(&Point<3>) -> Vector<3>) {}
+
     /// The rotation since the start of the section or body of which these are the spins ([`SpinInertia`]).
     fn orientation(&self, _state: &BodyState, _unknowns: [u32; 3]) -> Matrix<3> {
         Matrix::<3>::identity()
@@ -99,6 +103,9 @@ pub struct Moved {
     pub inertia: Vec<(Vector<3>, Option<Vector<3>>)>,
     /// Energy that damping took.
     pub damped: f64,
+    /// Error that the method added to displacements, per time, in the norm of the mass: the root of twice an energy (Zienkiewicz
+    /// and Xie 1991).
+    pub error: f64,
 }
 
 /// What moves: kinetic energy and momenta of a body.

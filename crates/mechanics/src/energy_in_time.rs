@@ -19,6 +19,13 @@ pub(crate) struct Solved<'a> {
     pub after: &'a [Vec<SiteResult>],
 }
 
+/// The smaller root `s` of `½ a s² + b s + work = 0`: what share of velocities `w` added to `v` takes away an energy, with their
+/// products `a = w·M w` and `b = v·M w`.
+pub(crate) fn share(a: f64, b: f64, work: f64) -> Option<f64> {
+    let square = b * b - 2.0 * a * work;
+    (square >= 0.0).then(|| -2.0 * work / (b + square.sqrt().copysign(b))).filter(|share| share.is_finite())
+}
+
 impl Solved<'_> {
     /// The mean of a value by the weights of the forces.
     fn mean(&self, of: impl Fn(&SiteResult) -> f64, (before, after): (&SiteResult, &SiteResult)) -> f64 {
@@ -46,7 +53,7 @@ impl Solved<'_> {
     pub fn damped(&self, state: &SystemState) -> Result<f64, IncrementError> {
         let (system, step, start) = (self.system, self.step, self.start);
         let Weights { alpha_m, alpha_f, .. } = step.weights;
-        let u = &state.travel;
+        let u = &step.motion(system, state);
         let product = |v: &[f64], w: &[f64]| -> f64 {
             let mut momenta = vec![0.0; v.len()];
             system.add_momenta(v, 1.0, &mut momenta);
@@ -111,13 +118,12 @@ impl Solved<'_> {
             return Ok(());
         }
         let Some(along) = self.velocities_by_contact(state)? else { return Ok(()) };
-        // ½ a s² + b s + work = 0, the smaller root; what cannot be given back stays.
         let (a, b) = (kinetic(state, &along, &along), kinetic(state, &state.velocities, &along));
         if a <= 0.0 {
             return Ok(());
         }
-        let square = b * b - 2.0 * a * work;
-        let share = if square < 0.0 { -b / a } else { -2.0 * work / (b + square.sqrt().copysign(b)) };
+        // What cannot be given back stays.
+        let share = share(a, b, work).unwrap_or(-b / a);
         state.velocities.iter_mut().zip(&along).for_each(|(v, w)| *v += share * w);
         Ok(())
     }

@@ -27,6 +27,7 @@ mod axes;
 pub mod body;
 mod branch;
 pub mod condensed;
+mod conserved;
 pub mod contact;
 pub mod contact_law;
 pub mod curve;

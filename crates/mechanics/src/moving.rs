@@ -21,14 +21,23 @@ impl System {
     pub(crate) fn momenta(&self, state: &SystemState, velocities: &[f64]) -> Vec<f64> {
         let (first, count) = self.numbering();
         let mut out = vec![0.0; count];
-        self.add_momenta(velocities, 1.0, &mut out);
-        for (body, (mass, first)) in self.masses.iter().zip(&first).enumerate() {
-            for own in mass.iter().flat_map(|m| &m.spins) {
-                let at = own.unknowns.map(|u| velocities[(first + u) as usize]);
-                let rotation = self.bodies[body].orientation(&state.bodies[body], own.unknowns);
-                let momentum = own.after(&rotation) * Vector::<3>::from(at);
-                own.unknowns.iter().zip(momentum.iter()).for_each(|(u, m)| out[(first + u) as usize] += m);
-            }
+        for (k, (body, first)) in self.bodies.iter().zip(first).enumerate().take(self.masses.len()) {
+            let own = first as usize..first as usize + body.unknowns();
+            out[own.clone()].copy_from_slice(&self.momenta_of(k, state, &velocities[own]));
+        }
+        out
+    }
+
+    /// Momenta of the unknowns of a body with these velocities.
+    pub(crate) fn momenta_of(&self, body: usize, state: &SystemState, velocities: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; velocities.len()];
+        let Some(mass) = &self.masses[body] else { return out };
+        mass.add_product(velocities, 1.0, &mut out);
+        for own in &mass.spins {
+            let at = own.unknowns.map(|u| velocities[u as usize]);
+            let rotation = self.bodies[body].orientation(&state.bodies[body], own.unknowns);
+            let momentum = own.after(&rotation) * Vector::<3>::from(at);
+            own.unknowns.iter().zip(momentum.iter()).for_each(|(u, m)| out[*u as usize] += m);
         }
         out
     }

@@ -18,6 +18,8 @@ pub struct Saved {
     pub contacts: Vec<[Vec<f64>; 2]>,
     /// Velocities, both accelerations, and what equilibrium lacks; none at rest.
     pub motion: [Vec<f64>; 4],
+    /// Energy that is still to be taken from the velocities of each body.
+    pub owed: Vec<f64>,
 }
 
 impl System {
@@ -30,6 +32,7 @@ impl System {
             time: state.time,
             contacts: self.contacts.iter().map(|c| c.history()).collect(),
             motion: [&state.velocities, &state.accelerations, &state.balancing, &state.forces].map(Vec::clone),
+            owed: state.owed.clone(),
         }
     }
 
@@ -39,6 +42,7 @@ impl System {
         let (_, unknowns) = self.numbering();
         let fits = saved.bodies.len() == state.bodies.len()
             && saved.motion.iter().all(|list| list.is_empty() || list.len() == unknowns)
+            && (saved.owed.is_empty() || saved.owed.len() == state.bodies.len())
             && (saved.bodies.iter().zip(&state.bodies))
                 .all(|(s, b)| s[0].len() == b.configuration.len() && s[1].len() == b.internal.len())
             && saved.multipliers.len() == state.multipliers.len()
@@ -50,6 +54,7 @@ impl System {
         state.bodies = saved.bodies.into_iter().map(body).collect();
         (state.multipliers, state.reactions, state.time) = (saved.multipliers, saved.reactions, saved.time);
         [state.velocities, state.accelerations, state.balancing, state.forces] = saved.motion;
+        state.owed = saved.owed;
         let before = self.histories();
         for (contact, history) in self.contacts.iter_mut().zip(&saved.contacts) {
             if contact.restore(history).is_err() {
@@ -61,11 +66,12 @@ impl System {
     }
 
     /// What all contacts keep, to be put back.
-    pub(crate) fn histories(&self) -> Vec<[Vec<f64>; 2]> {
+    pub fn histories(&self) -> Vec<[Vec<f64>; 2]> {
         self.contacts.iter().map(|c| c.history()).collect()
     }
 
-    pub(crate) fn put_back(&mut self, histories: &[[Vec<f64>; 2]]) {
+    /// Puts back what all contacts kept.
+    pub fn put_back(&mut self, histories: &[[Vec<f64>; 2]]) {
         for (contact, history) in self.contacts.iter_mut().zip(histories) {
             // Its own numbers fit.
             contact.restore(history).unwrap_or_else(|error| unreachable!("{error}"));

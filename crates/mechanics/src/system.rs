@@ -63,12 +63,15 @@ pub struct SystemState {
     pub(crate) balancing: Vec<f64>,
     /// What equilibrium lacks where there is a mass.
     pub(crate) forces: Vec<f64>,
+    /// Energy that is still to be taken from the velocities of each body.
+    pub(crate) owed: Vec<f64>,
 }
 
 impl SystemState {
     /// Takes all motion out of the state.
     pub fn come_to_rest(&mut self) {
-        let of_motion = [&mut self.velocities, &mut self.accelerations, &mut self.balancing, &mut self.forces];
+        let of_motion =
+            [&mut self.velocities, &mut self.accelerations, &mut self.balancing, &mut self.forces, &mut self.owed];
         of_motion.into_iter().for_each(Vec::clear);
     }
 }
@@ -344,6 +347,7 @@ impl System {
             accelerations: at.accelerations.clone(),
             balancing: at.balancing.clone(),
             forces: at.forces.clone(),
+            owed: at.owed.clone(),
         }
     }
 

@@ -321,7 +321,40 @@ impl System {
     }
 }
 
+impl System {
+    /// The mean forces that Newton's method left in the state that ends an increment.
+    pub(crate) fn unbalanced(&self, state: &SystemState) -> Result<Vec<f64>, AssemblyError> {
+        let Some(step) = self.step.as_ref().filter(|step| step.conserves()) else { return Ok(Vec::new()) };
+        let at = self.assemble(state, state.time, Order::First)?;
+        let mut out: Vec<f64> =
+            at.residual[..step.known.len()].iter().map(|r| r * (1.0 - step.weights.alpha_f)).collect();
+        self.held_unknowns(state)?.into_iter().for_each(|unknown| out[unknown] = 0.0);
+        Ok(out)
+    }
+
+    /// The unknowns that supports hold by themselves.
+    pub(crate) fn held_unknowns(&self, state: &SystemState) -> Result<Vec<usize>, AssemblyError> {
+        let (single, _) = self.held(&state.bodies, state.time)?;
+        Ok(single.iter().map(|held| held.constraint.terms[0].0 as usize).collect())
+    }
+}
+
 impl TimeStep {
+    /// Displacements, and rotation vectors of what turns, from the start of the increment to a state.
+    pub(crate) fn motion(&self, system: &System, state: &SystemState) -> Vec<f64> {
+        let mut out = state.travel.clone();
+        for turns in &self.turning {
+            let (psi, _) = turns.turned(system, state);
+            turns.unknowns().iter().zip(psi.iter()).for_each(|(u, p)| out[*u as usize] = *p);
+        }
+        out
+    }
+
+    /// Whether the method conserves the energy of linear bodies: that of all elastic ones is to be conserved then.
+    pub(crate) fn conserves(&self) -> bool {
+        self.weights == Weights::of_radius(1.0)
+    }
+
     /// Adds inertia and damping by mass to the residual at a state, and to its tangent if there is one.
     pub(crate) fn add_to(
         &self,

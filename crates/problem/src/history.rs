@@ -16,7 +16,8 @@ pub struct Step {
     pub control: Option<Control>,
     /// Motion with inertia; equilibrium at each time if left out.
     pub dynamics: Option<Dynamics>,
-    /// Time tolerance to which changes of topology and jumps are located; not located if left out.
+    /// Time tolerance to which events are located: changes of topology and jumps of membranes; of other bodies when contacts touch,
+    /// part, stick and slip. Not located if left out.
     pub events: Option<f64>,
 }
 
@@ -28,6 +29,9 @@ pub struct Dynamics {
     pub spectral_radius: Option<f64>,
     /// Damping by mass and stiffness; none if left out.
     pub damping: Option<RayleighDamping>,
+    /// Error of the displacements that an increment may add, per time, relative to the largest velocity so far, both in the norm of
+    /// the mass. Increments are solved in parts that keep to it. Left out: each increment is one part.
+    pub tolerance: Option<f64>,
 }
 
 /// Damping forces in proportion to the momentum of each point, and to the rate of the internal forces.

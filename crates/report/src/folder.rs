@@ -3,7 +3,7 @@
 use crate::error::ReportError;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use signorini::report::{Event, StepReport, Summary, Warning};
+use signorini::report::{ContactEvent, Event, StepReport, Summary, Warning};
 use std::path::{Path, PathBuf};
 
 /// The first line of the log of every run.
@@ -29,6 +29,7 @@ pub struct Unfinished {
     pub steps: Vec<StepReport>,
     pub warnings: Vec<Warning>,
     pub events: Vec<Event>,
+    pub contact_events: Vec<ContactEvent>,
 }
 
 /// An iteration of the log.
@@ -197,6 +198,7 @@ fn unfinished(checkpoint: Option<&Value>) -> Unfinished {
         steps: list(checkpoint, "steps"),
         warnings: list(checkpoint, "warnings"),
         events: list(checkpoint, "events"),
+        contact_events: list(checkpoint, "contact_events"),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::folder::{Results, Told};
 use crate::html::{section, table};
 use signorini::output::figure::{figure, figures, told, told_vector};
-use signorini::report::{Event, StepReport, Summary, UnitNames, columns, headed, resultants_of};
+use signorini::report::{ContactEvent, Event, StepReport, Summary, UnitNames, columns, headed, resultants_of};
 
 /// More rows than this are not read; the table of the folder has all.
 const ROWS: usize = 60;
@@ -13,7 +13,10 @@ pub fn results(results: &Results) -> String {
     let body = match &results.told {
         Told::Run(summary) => of_summary(summary),
         Told::Unfinished(found) => {
-            of_steps(&found.steps, None) + &events(&found.events, None) + &increments_without_units(&found.steps)
+            of_steps(&found.steps, None)
+                + &events(&found.events, None)
+                + &contact_events(&found.contact_events)
+                + &increments_without_units(&found.steps)
         }
         Told::Answers(list) => return super::answers::answers(list),
         Told::Other(_) => return String::new(),
@@ -24,7 +27,10 @@ pub fn results(results: &Results) -> String {
 fn of_summary(summary: &Summary) -> String {
     let has_contacts = summary.steps.iter().any(|s| !s.contacts.is_empty() || s.equilibrium_residual.is_some());
     let increments = if has_contacts { increments(summary) } else { String::new() };
-    increments + &events(&summary.events, summary.units.as_ref()) + &of_steps(&summary.steps, summary.units.as_ref())
+    increments
+        + &events(&summary.events, summary.units.as_ref())
+        + &contact_events(&summary.contact_events)
+        + &of_steps(&summary.steps, summary.units.as_ref())
 }
 
 /// The table of the terminal.
@@ -131,4 +137,11 @@ fn events(events: &[Event], units: Option<&UnitNames>) -> String {
         "zones".into(),
     ];
     shortened("Changes of the contact zones", &head, rows.collect())
+}
+
+fn contact_events(events: &[ContactEvent]) -> String {
+    let row =
+        |e: &ContactEvent| vec![figure(e.time, Some(e.within)), format!("`{}`", e.contact), e.kind.words().into()];
+    let head = ["t", "contact", "from then on it"].map(String::from);
+    shortened("Events of the contacts", &head, events.iter().map(row).collect())
 }

@@ -441,6 +441,22 @@ impl Inertial for Beam {
         Ok(Some(out))
     }
 
+    /// A section stays normal to the line: `ω = t × v'/|t| + (ω·t) t`.
+    fn turn_sections(&self, velocities: &mut [f64], turning: &dyn Fn(&Point<3>) -> Vector<3>) {
+        let mut of_line = vec![0.0; self.start.len()];
+        for node in 0..self.line.nodes() {
+            of_line[NUMBERS * node..NUMBERS * node + 6].copy_from_slice(&velocities[NODE * node..NODE * node + 6]);
+        }
+        for element in 0..self.elements.len() {
+            for (first, xi) in self.spins_of(element).into_iter().zip([0.0, 1.0, 0.5]) {
+                let (at, change) = (self.line.jet(&self.start, element, xi), self.line.jet(&of_line, element, xi));
+                let t = at.d1.normalize();
+                let spin = t.cross(&change.d1) / at.d1.norm() + t * t.dot(&turning(&at.x));
+                velocities[first as usize..first as usize + 3].copy_from_slice(spin.as_slice());
+            }
+        }
+    }
+
     fn orientation(&self, state: &BodyState, unknowns: [u32; 3]) -> Matrix<3> {
         self.frame(state, unknowns[0]) * self.frame(&self.start(), unknowns[0]).transpose()
     }

@@ -2,7 +2,7 @@
 
 use crate::common::{Found, Options, Search, Surroundings, V, clamp, load_body, newton};
 use signorini_geometry::Vector;
-use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Inertial, Load, Order};
+use signorini_mechanics::body::{Body, BodyState, Constraint, Contribution, Inertial, Kinematics, Load, Order};
 use signorini_rope::beam::Beam;
 use signorini_rope::cable::Cable;
 use signorini_rope::cable::element::Carries;
@@ -269,5 +269,22 @@ fn a_beam_has_the_mass_of_its_sections() {
     let wanted = [0.04 + 0.09, 0.09, 0.04].map(|square| mass * square / 12.0);
     for (k, wanted) in wanted.into_iter().enumerate() {
         assert!((sum[(k, k)] - wanted).abs() < 1e-14, "{sum}");
+    }
+}
+
+/// Sections of a bent beam that turns as a rigid body turn with it.
+#[test]
+fn sections_follow_their_line() {
+    let stiffness = square(0.1, 1e3);
+    for beam in [straight(2.0, 3, stiffness), bend(1.5, 4, stiffness)] {
+        let turns = V::new(0.3, -0.7, 1.1);
+        let modes = beam.rigid_modes(&beam.start());
+        let wanted: Vec<f64> = (0..beam.unknowns()).map(|k| (0..3).map(|i| turns[i] * modes[3 + i][k]).sum()).collect();
+        let mut found = wanted.clone();
+        beam.spins().iter().flatten().for_each(|u| found[*u as usize] = 0.0);
+        beam.turn_sections(&mut found, &|_| turns);
+        for (a, b) in found.iter().zip(&wanted) {
+            assert!((a - b).abs() < 1e-13, "{a} {b}");
+        }
     }
 }

@@ -86,6 +86,7 @@ pub fn run_into(case: &PathCase, folder: &Folder, progress: &mut dyn Progress) -
         interpreted: head.interpreted.clone(),
         steps: found.steps,
         events: Vec::new(),
+        contact_events: Vec::new(),
         of_paths: found.reports,
         environment: environment::describe(start, rayon::current_num_threads(), (&text, 0.0)),
     };

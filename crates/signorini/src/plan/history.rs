@@ -35,6 +35,8 @@ pub(super) struct SystemIncrements {
     pub times: Vec<f64>,
     /// Of those along a path of equilibria.
     pub arc_lengths: Vec<Option<ArcLengthIncrement>>,
+    /// Time to which events are located.
+    pub events: Vec<Option<f64>>,
     /// The step of each.
     pub steps: Vec<usize>,
 }
@@ -55,6 +57,7 @@ impl Planner<'_> {
         Ok(SystemIncrements {
             times: planned.iter().map(|i| i.time).collect(),
             arc_lengths: planned.iter().map(of).collect(),
+            events: planned.iter().map(|i| i.events).collect(),
             steps: planned.iter().map(|i| i.step).collect(),
         })
     }

@@ -60,6 +60,9 @@ pub struct Summary {
     pub steps: Vec<StepReport>,
     /// Changes of topology, in steps with `events`.
     pub events: Vec<Event>,
+    /// When contacts of solids, ropes and beams touched, parted, stuck and slipped, in steps with `events`.
+    #[serde(default)]
+    pub contact_events: Vec<ContactEvent>,
     /// Results of paths on rigid bodies.
     #[serde(flatten)]
     pub of_paths: PathReports,
@@ -333,6 +336,48 @@ pub struct Event {
     pub load_force: f64,
     /// Energy released in a jump of an adhesive contact. Reported once if one jump consists of several events.
     pub energy_released: Option<f64>,
+}
+
+/// A change of what a contact does as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactEvent {
+    /// Name of the contact.
+    pub contact: String,
+    /// What it does from then on.
+    pub kind: ContactEventKind,
+    /// Time of the event: the middle of the interval that contains it.
+    pub time: f64,
+    /// Length of the time interval that contains the event.
+    pub within: f64,
+}
+
+/// What a contact does from an event on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactEventKind {
+    /// It is closed at a point at least; before it was open everywhere.
+    Touch,
+    /// It is open everywhere.
+    LiftOff,
+    /// All of it sticks.
+    Stick,
+    /// Part of it slips, part of it sticks.
+    PartialSlip,
+    /// All of it slips.
+    Slip,
+}
+
+impl ContactEventKind {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Touch => "touches",
+            Self::LiftOff => "lifts off",
+            Self::Stick => "sticks",
+            Self::PartialSlip => "slips in part",
+            Self::Slip => "slips",
+        }
+    }
 }
 
 /// Kinds of events.

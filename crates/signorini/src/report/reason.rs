@@ -76,6 +76,8 @@ pub enum WarningKind {
     Case,
     /// The load does not bring a body into contact.
     Apart,
+    /// The error of the motion in an increment is larger than `dynamics.tolerance`.
+    ErrorInTime,
     /// The surface has a kink within the contact zone of a membrane. The pressure along it is a line force, which is
     /// not included.
     Kink,

@@ -1,6 +1,8 @@
 //! The words of the summary: its schema, its keys and what they mean, from the types.
 
-use super::{EventKind, LocatedBy, PathEventKind, Reason, RopeCondition, Summary, TractionKind, WarningKind};
+use super::{
+    ContactEventKind, EventKind, LocatedBy, PathEventKind, Reason, RopeCondition, Summary, TractionKind, WarningKind,
+};
 use crate::case::schema::{Key, keys_of};
 use serde_json::{Value, json};
 
@@ -40,6 +42,7 @@ pub fn words() -> Vec<Word> {
     };
     of("reason", schemars::schema_for!(Reason))
         .chain(of("event", schemars::schema_for!(EventKind)))
+        .chain(of("event of a contact", schemars::schema_for!(ContactEventKind)))
         .chain(of("warning", schemars::schema_for!(WarningKind)))
         .chain(of("event of a path", schemars::schema_for!(PathEventKind)))
         .chain(of("condition of a rope", schemars::schema_for!(RopeCondition)))

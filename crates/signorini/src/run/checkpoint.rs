@@ -31,7 +31,7 @@ pub struct Checkpoint {
 pub fn write(record: &Record, next: usize, state: Value) -> Result<(), OutputError> {
     let all = json!({
         "version": VERSION, "case": record.text, "next": next, "state": state, "steps": record.steps,
-        "warnings": record.warnings, "events": record.events, "frames": record.frames, "unknowns": record.unknowns,
+        "warnings": record.warnings, "events": record.events, "contact_events": record.contact_events, "frames": record.frames, "unknowns": record.unknowns,
     });
     record.folder.write(FILE, all.to_string().as_bytes())
 }
@@ -68,6 +68,7 @@ pub fn read(path: &Path, record: Record) -> Result<Checkpoint, String> {
                 steps: take(&mut v, "steps")?,
                 warnings: take(&mut v, "warnings")?,
                 events: take(&mut v, "events")?,
+                contact_events: take(&mut v, "contact_events")?,
                 frames: take(&mut v, "frames")?,
                 unknowns: take(&mut v, "unknowns")?,
                 ..record

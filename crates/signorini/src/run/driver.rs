@@ -347,6 +347,7 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
         interpreted: record.interpreted.clone(),
         steps: record.steps.clone(),
         events: record.events.clone(),
+        contact_events: record.contact_events.clone(),
         of_paths: PathReports::default(),
         environment: environment::describe(start, rayon::current_num_threads(), (&record.text, record.audit_seconds)),
     };

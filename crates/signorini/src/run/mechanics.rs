@@ -1,7 +1,9 @@
 //! Bodies of any kind in one system as a model: ropes, beams, free rigid bodies.
 
 mod accuracy;
+mod events;
 mod frame;
+mod parts;
 mod path;
 pub(crate) mod recovered;
 mod report;
@@ -20,25 +22,14 @@ use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::{CaseError, Space};
 use crate::report::{ForceBounds, Reason, StepReport};
 use frame::{Frame, take};
+use parts::{Control, Told};
 use path::OnPath;
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_mechanics::{IncrementError, IncrementResult, Moving, Saved, Stability, SystemState};
+use signorini_mechanics::{IncrementError, IncrementResult, Saved, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// Share of an increment below which it is not cut any more.
-const SMALLEST_INCREMENT: f64 = 1e-3;
-/// An increment is cut to this part of itself, and grows by this factor after a success.
-const CUT: f64 = 0.25;
-const GROWTH: f64 = 1.5;
-
-/// Iterations of Newton's method for one increment, with all its parts and all ways to its states, after which it is given up:
-/// as many as take about as long in small systems, and in large ones never less than a hard increment may take.
-const MOST_ITERATIONS: usize = 1000;
-const LEAST_ITERATIONS: usize = 300;
-const MOST_SOLVED: usize = 800_000;
 
 /// A system on its way through its history.
 pub struct MechanicsModel {
@@ -48,6 +39,10 @@ pub struct MechanicsModel {
     film: Film<Frame>,
     /// Where it stands in a step by arc length.
     path: OnPath,
+    /// What decides how increments are cut into parts.
+    control: Control,
+    /// What is still to be told of the parts of an increment.
+    told: Told,
     /// Whether the state at t = 0 is that of rest.
     rests: bool,
     /// Why there is no state after it.
@@ -76,99 +71,12 @@ impl MechanicsModel {
             last: None,
             film,
             path: OnPath::default(),
+            control: Control::default(),
+            told: Told::default(),
             rests,
             failure: None,
             result: IncrementResult::default(),
             audit: SystemAudit::default(),
-        }
-    }
-
-    /// Solves for the end of an increment, which is cut where it has no solution at once.
-    fn reach(
-        &mut self,
-        index: usize,
-        [before, time]: [f64; 2],
-        progress: &mut dyn Progress,
-    ) -> Result<Result<IncrementResult, Failure>, CaseError> {
-        let (mut reached, mut size) = (before, time - before);
-        let (mut iterations, mut residuals) = (0, Vec::new());
-        // Of the parts of the increment before the last one, by contact.
-        let mut dissipated = vec![0.0; self.plan.system.contacts.len()];
-        let mut in_bodies = vec![0.0; self.plan.system.bodies.len()];
-        let unknowns: usize = self.plan.system.bodies.iter().map(|b| b.unknowns()).sum();
-        let most = (MOST_SOLVED / unknowns.max(1)).clamp(LEAST_ITERATIONS, MOST_ITERATIONS);
-        let mut lost: Option<Stability> = None;
-        let mut moved: Option<Vec<Moving>> = None;
-        let mut damped = 0.0;
-        let mut reason: Option<IncrementError> = None;
-        loop {
-            let last = time - before <= 0.0 || reached + size >= time - 1e-9 * (time - before);
-            let target = if last { time } else { reached + size };
-            let mut seen = Vec::new();
-            let mut is_given_up = false;
-            let mut report = |iteration: usize, residual: f64| {
-                tell_iteration(progress, index, target, (iteration, residual));
-                seen.push(residual);
-                is_given_up = residuals.len() + seen.len() >= most;
-                !is_given_up && !progress.interrupted()
-            };
-            let found = self.plan.system.solve(&self.state, target, &mut report);
-            if let Some(error) = self.plan.wrong.take(&self.plan.head.problem) {
-                return Err(error);
-            }
-            residuals.append(&mut seen);
-            match found {
-                Ok((state, mut result)) => {
-                    iterations += result.iterations;
-                    dissipated.iter_mut().zip(&result.dissipated).for_each(|(sum, own)| *sum += own);
-                    in_bodies.iter_mut().zip(&result.dissipated_in_bodies).for_each(|(sum, own)| *sum += own);
-                    if let Some(own) = &mut result.moved {
-                        own.before.clone_from(moved.get_or_insert_with(|| own.before.clone()));
-                        damped += own.damped;
-                        own.damped = damped;
-                    }
-                    // An increment that was cut tells of the first part that lost its stability.
-                    if let Some(told) = &mut result.stability {
-                        if let Some(before) = lost.take() {
-                            told.since(before);
-                        }
-                        lost = Some(told.clone());
-                    }
-                    if last {
-                        self.state = state;
-                        let dissipated_in_bodies = in_bodies;
-                        let history = residuals;
-                        let mut found =
-                            IncrementResult { iterations, history, dissipated, dissipated_in_bodies, ..result };
-                        recovered::recover_at_nodes(&self.plan, &mut found);
-                        return Ok(Ok(found));
-                    }
-                    if let Err(error) = self.plan.system.accept(&state) {
-                        return Ok(Err(self.failed(&error, residuals)));
-                    }
-                    self.state = state;
-                    reached = target;
-                    size *= GROWTH;
-                }
-                Err(IncrementError::Interrupted) if is_given_up => {
-                    return Ok(Err(given_up(reason.as_ref(), target, residuals)));
-                }
-                Err(error) => {
-                    let curable = !matches!(
-                        error,
-                        IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
-                    );
-                    if !curable || size <= SMALLEST_INCREMENT * (time - before) || time <= before {
-                        let mut failure = self.failed(&error, residuals);
-                        if reached > before {
-                            failure.text += &format!(" (the last equilibrium is at t = {reached:.6})");
-                        }
-                        return Ok(Err(failure));
-                    }
-                    reason = Some(error);
-                    size *= CUT;
-                }
-            }
         }
     }
 
@@ -178,6 +86,7 @@ impl MechanicsModel {
         self.plan.system.dynamics = dynamics;
         if dynamics.is_none() {
             self.state.come_to_rest();
+            self.control.come_to_rest();
         } else if self.state.velocities.is_empty() {
             self.state.velocities.clone_from(&self.plan.motion.velocities);
         }
@@ -276,24 +185,6 @@ fn rests(plan: &MechanicsPlan, start: &SystemState) -> bool {
     plan.wrong.take(&plan.head.problem).is_none() && found
 }
 
-/// An increment that is given up, with what went wrong before.
-fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
-    let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
-    let [low, high] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, 0.0)]
-        .map(|(choose, start)| recent.iter().copied().fold(start, choose));
-    let count = residuals.len();
-    let round = format!(
-        "no state at t = {time} in {count} iterations of Newton's method: the residual alternates between {low:.1e} \
-         and {high:.1e} tolerances; there may be no equilibrium: check that every loaded body is supported; use more \
-         increments, or more cells"
-    );
-    let (reason, text) = match before {
-        Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),
-        _ => (Reason::Newton, round),
-    };
-    Failure { reason, text, residuals }
-}
-
 impl Model for MechanicsModel {
     fn head(&self) -> &Head {
         &self.plan.head
@@ -327,6 +218,9 @@ impl Model for MechanicsModel {
             None => self.reach(index, [before, self.plan.times[index]], progress)?,
         };
         let time = self.state.time;
+        let Told { events, warning } = std::mem::take(&mut self.told);
+        record.contact_events.extend(events);
+        warning.into_iter().for_each(|warning| record.warn_once(warning));
         let result = match found {
             Ok(result) => result,
             Err(Failure { reason, text, residuals }) => {
@@ -459,10 +353,10 @@ impl Model for MechanicsModel {
             let frame = Frame { time: shown.time, bodies: self.state.bodies.clone(), zones: shown.zones.clone() };
             frame.write(folder, next - 1)?;
         }
-        let Saved { bodies, multipliers, reactions, time, contacts, motion } = self.plan.system.save(&self.state);
+        let Saved { bodies, multipliers, reactions, time, contacts, motion, owed } = self.plan.system.save(&self.state);
         Ok(Some(json!({
             "bodies": bodies, "multipliers": multipliers, "reactions": reactions, "time": time, "contacts": contacts,
-            "motion": motion, "path": self.path, "audit": self.audit.save(),
+            "motion": motion, "owed": owed, "path": self.path, "control": self.control, "audit": self.audit.save(),
         })))
     }
 
@@ -478,11 +372,13 @@ impl Model for MechanicsModel {
                 time: state["time"].as_f64()?,
                 contacts: take(&mut state["contacts"])?,
                 motion: take(&mut state["motion"])?,
+                owed: take(&mut state["owed"])?,
             })
         };
         let restored = { saved }().and_then(|saved| self.plan.system.restore(saved));
         self.state = restored.ok_or_else(|| checkpoint::damaged(folder))?;
         self.path = take(&mut state["path"]).ok_or_else(|| checkpoint::damaged(folder))?;
+        self.control = take(&mut state["control"]).ok_or_else(|| checkpoint::damaged(folder))?;
         self.audit.restore(&state["audit"], &self.plan, &self.state, self.state.time);
         Ok(())
     }

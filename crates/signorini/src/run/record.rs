@@ -4,7 +4,7 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError, vtk};
 use crate::plan::Head;
 use crate::plan::reader::Interpreted;
-use crate::report::{ContactReport, Event, Pose, Probe, Reason, StepReport, UnitNames, Warning};
+use crate::report::{ContactEvent, ContactReport, Event, Pose, Probe, Reason, StepReport, UnitNames, Warning};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -27,6 +27,7 @@ pub struct Record {
     pub steps: Vec<StepReport>,
     pub warnings: Vec<Warning>,
     pub events: Vec<Event>,
+    pub contact_events: Vec<ContactEvent>,
     /// Times and numbers of the files of fields.
     pub frames: Vec<(f64, String)>,
     /// The most unknowns solved for.
@@ -54,6 +55,7 @@ impl Record {
             steps: Vec::new(),
             warnings: head.warnings.to_vec(),
             events: Vec::new(),
+            contact_events: Vec::new(),
             frames: Vec::new(),
             unknowns: 0,
             audit_seconds: 0.0,

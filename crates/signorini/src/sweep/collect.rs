@@ -9,12 +9,13 @@ use crate::report::{StepReport, signed_size};
 use serde_json::{Value, json};
 
 /// Keys of the summary beside those of its increments.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "answer",
     "case",
     "converged",
     "environment",
     "events",
+    "contact_events",
     "method",
     "paths",
     "reason",

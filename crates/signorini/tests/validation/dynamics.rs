@@ -181,6 +181,63 @@ fn a_block_swings_on_springs_with_order_two() {
         let [coarse, fine] = [at("40"), at("80")];
         assert!((1.85..2.15).contains(&(coarse / fine).log2()), "{radius}: {coarse} {fine}");
     }
+    // One increment in parts that keep to a tolerance, relative to the largest velocity, 3, times the duration.
+    let exact = 3.0 / 20.0f64.sqrt() * 20.0f64.sqrt().sin();
+    let off = |tolerance: f64| {
+        let dynamics = format!("{{ tolerance = {tolerance} }}");
+        let found = summary(&case, &with(&[("steps.0.increments", "1"), ("steps.0.dynamics", &dynamics)]));
+        assert_eq!(found["converged"], true, "{}", found["verdict"]);
+        (number(&last_step(&found)["probes"]["corner"]["displacement"][2]) - exact) / 3.0
+    };
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let ratio = off(tolerance) / tolerance;
+        assert!((0.05..1.0).contains(&ratio.abs()), "{tolerance}: {ratio}");
+    }
+}
+
+/// A block that falls on a floor touches it after `√(2 h/g)`, and one that is pushed harder and harder slips at `μ N`.
+#[test]
+fn events_of_contacts_are_located() {
+    let case = |of_step: &str, more: &str| {
+        format!(
+            r#"
+space = "3d"
+gravity = [0, 0, -10]
+[bodies.block.solid]
+mesh.box = {{ min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] }}
+material.linear_elastic = {{ youngs_modulus = 1e6, poissons_ratio = 0 }}
+density = 100
+[bodies.floor.rigid]
+{more}
+[contacts.base]
+between = ["block:bottom", "floor"]
+friction.coulomb = {{ mu = 0.3 }}
+[[steps]]
+to = 1
+{of_step}
+"#
+        )
+    };
+    let located = |found: &Value| -> Vec<(String, f64, f64)> {
+        let of = |e: &Value| (e["kind"].as_str().unwrap().to_string(), number(&e["time"]), number(&e["within"]));
+        found["contact_events"].as_array().unwrap().iter().map(of).collect()
+    };
+    let falls = case(
+        "increments = 4\nevents = 1e-6\ndynamics = {}",
+        "shape.plane = { point = [0, 0, -1.25], normal = [0, 0, 1] }",
+    );
+    let events = located(&summary(&falls, &set(&[])));
+    let (kind, time, within) = &events[0];
+    assert!(kind == "touch" && *within <= 1e-6 && (time - 0.5).abs() < 1e-6, "{events:?}");
+    let pushed = case(
+        "increments = 3\nevents = 1e-7",
+        "shape.plane = { point = [0, 0, 0], normal = [0, 0, 1] }\n[loads.push]\non = \"block:left\"\nforce = [\"500*t\", 0, 0]\n\
+         [supports.bed]\non = \"block:right\"\nspring = [100, 0, 0]",
+    );
+    let events = located(&summary(&pushed, &set(&[])));
+    // The weight is 1000: the whole contact slips from the force 300 on, the spring takes next to nothing.
+    let slips = events.iter().find(|e| e.0 == "slip").unwrap();
+    assert!((slips.1 - 0.6).abs() < 1e-2 && slips.2 <= 1e-7, "{events:?}");
 }
 
 /// A string under tension with the velocity of its first mode: after a quarter of the period `2 L/c` it is farthest, and still.
@@ -258,7 +315,70 @@ probes.tip = [1, 0, 0]
     assert!((other / 0.01 + 1.0).abs() < 0.06, "{other}");
     let stored = number(&found["steps"][0]["energy"]);
     for step in &steps {
-        assert!((energy(step) / stored - 1.0).abs() < 1e-4, "{}", energy(step) / stored);
+        assert!((energy(step) / stored - 1.0).abs() < 1e-10, "{}", energy(step) / stored);
+    }
+}
+
+/// Rubber, a beam and finite cells that fly, turn and swing keep energy, momentum and angular momentum, and converge with order two.
+#[test]
+fn flexible_bodies_that_fly_conserve_what_they_have() {
+    let bodies = [
+        r#"
+[bodies.body.solid]
+mesh.box = { min = [0, 0, 0], max = [1, 0.2, 0.1], cells = [4, 1, 1] }
+strain = "finite"
+material.neo_hooke = { youngs_modulus = 1e5, poissons_ratio = 0.3 }
+density = 1000
+velocity = ["1 + 2*y", "10*(x-0.5)", "3*(x-0.5)^2 + 2*(x - 0.5)"]
+"#,
+        r#"
+[bodies.body.beam]
+path.points = [[0, 0, 0], [1, 0, 0]]
+cells = 4
+section.circle.radius = 0.05
+material.linear_elastic = { youngs_modulus = 1e4, poissons_ratio = 0.3 }
+density = 1000
+velocity = ["1", "10*(x-0.5)", "3*(x-0.5)^2 + 2*(x - 0.5)"]
+"#,
+        r#"
+[bodies.body.cells]
+geometry.sphere = { center = [0.8, 0, 0], radius = 0.2 }
+mesh.grid = { min = [0.6, -0.2, -0.2], max = [1, 0.2, 0.2], cells = [2, 2, 2] }
+strain = "finite"
+material.neo_hooke = { youngs_modulus = 1e5, poissons_ratio = 0.3 }
+density = 1000
+velocity = ["1 - 10*y + 8*(x-0.8)", "10*(x-0.5)", "20*(x-0.5)^2 + 2*(x - 0.5)"]
+"#,
+    ];
+    for body in bodies {
+        let run = |increments: usize| {
+            let case = format!(
+                "space = \"3d\"\n{body}\n[[steps]]\nto = 0.1\nincrements = {increments}\ndynamics = {{}}\n[output]\nprobes.end = [1, 0, 0]\n"
+            );
+            summary(&case, &set(&[]))
+        };
+        let runs = [40, 80, 160].map(run);
+        for found in &runs {
+            assert_eq!(found["converged"], true, "{}", found["verdict"]);
+            let steps = steps(found);
+            let conserved = |step: &Value| -> Vec<f64> {
+                let motion = &step["motion"]["body"];
+                let of = |key: &str| (0..3).map(move |i| number(&motion[key][i])).collect::<Vec<_>>();
+                [vec![energy(step)], of("velocity"), of("angular_momentum")].concat()
+            };
+            let first = conserved(steps[0]);
+            let stored = steps.iter().map(|step| number(&step["energy"])).fold(0.0, f64::max);
+            assert!(stored > 0.01 * first[0], "it deforms: {stored}");
+            for step in &steps {
+                for (now, then) in conserved(step).iter().zip(&first) {
+                    assert!((now - then).abs() < 1e-12 * first[0].max(1.0), "{now} {then}: {body}");
+                }
+            }
+        }
+        let end = |k: usize, i: usize| number(&last_step(&runs[k])["probes"]["end"]["displacement"][i]);
+        let change = |k: usize| (0..3).map(|i| (end(k + 1, i) - end(k, i)).powi(2)).sum::<f64>().sqrt();
+        let order = (change(0) / change(1)).log2();
+        assert!((1.7..2.4).contains(&order), "{order}: {body}");
     }
 }
 

@@ -56,7 +56,7 @@ impl System {
             support_forces: run.supports.iter().map(|own| own.map(|impulse| impulse * mean)).collect(),
             dissipated: contacts.map(|c| run.so_far.work(c)).collect(),
             unknowns: count,
-            moved: Some(Moved { before, after, inertia, damped: 0.0 }),
+            moved: Some(Moved { before, after, inertia, ..Moved::default() }),
             ..IncrementResult::default()
         };
         let memory = motion.memory(&found, &run.so_far);

@@ -106,6 +106,8 @@ pub struct MechanicsPlan {
     pub times: Vec<f64>,
     /// Of each increment, if it is along a path.
     pub arc_lengths: Vec<Option<ArcLengthIncrement>>,
+    /// Time to which events of each increment are located.
+    pub events: Vec<Option<f64>>,
     /// How bodies move with inertia.
     pub motion: Motion,
     pub probes: BTreeMap<String, Point<3>>,
@@ -235,7 +237,7 @@ impl Planner<'_> {
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
         self.check_restitution(&system)?;
-        let SystemIncrements { times, arc_lengths, steps } = self.system_increments()?;
+        let SystemIncrements { times, arc_lengths, events, steps } = self.system_increments()?;
         let motion = self.motion(&numbers, &mut system, &steps, &wrong, &mut warnings)?;
         // What is told of the solver is told of steps in motion.
         system.dynamics = motion.dynamics.iter().copied().flatten().next();
@@ -270,8 +272,11 @@ impl Planner<'_> {
         if system.contacts.is_empty() && system.constraints.is_empty() && system.bodies.len() > 1 {
             warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
-        if problem.steps.iter().any(|s| s.events.is_some()) {
-            warnings.push("`events` are located for membranes only".into());
+        if system.is_rigid() && problem.steps.iter().any(|s| s.events.is_some()) {
+            warnings.push("`events` of rigid bodies are not located".into());
+        }
+        if arc_lengths.iter().zip(&events).any(|(path, event)| path.is_some() && event.is_some()) {
+            warnings.push("`events` are not located along a path by arc length".into());
         }
         let mut probes = BTreeMap::new();
         for (name, at) in &problem.output.probes {
@@ -289,6 +294,7 @@ impl Planner<'_> {
             kinds,
             times,
             arc_lengths,
+            events,
             motion,
             probes,
             moments_about: match &problem.output.moments_about {

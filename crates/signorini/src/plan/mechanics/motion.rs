@@ -5,7 +5,7 @@ use crate::plan::planner::Planner;
 use crate::problem::units::{ACCELERATION, DENSITY, FREQUENCY, MASS_PER_LENGTH, TIME, VELOCITY};
 use crate::problem::{self, Body, CaseError, List, Rope, Value};
 use crate::report::Warning;
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::contact::Part;
 use signorini_mechanics::{AssemblyError, Contribution, Dynamics, Load, Order, PlacedLoad, System, TimedLoad};
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub const GRAVITY: &str = "gravity";
 pub struct Motion {
     /// Of each increment; none of those in equilibrium.
     pub dynamics: Vec<Option<Dynamics>>,
+    /// The error in time that each increment may add, where it is controlled.
+    pub tolerance: Vec<Option<f64>>,
     /// Of all unknowns of the bodies where they begin to move.
     pub velocities: Vec<f64>,
 }
@@ -31,6 +33,21 @@ fn stated(body: &Body) -> (Option<&Value>, Option<&List<Value>>) {
         Body::Rope(own) => (own.mass_per_length.as_ref(), own.velocity.as_ref()),
         Body::Membrane(_) | Body::Rigid(_) => (None, None),
     }
+}
+
+/// Distance relative to the size of a body over which velocities are compared: with it the error of a smooth field and rounding are
+/// about the same.
+const BESIDE: f64 = 1e-5;
+
+/// How fast a field of velocities turns about a point, by central differences; not at all where it has no values beside it.
+fn half_of_curl(field: &dyn Fn(&Point<3>) -> Vector<3>, x: &Point<3>, beside: f64) -> Vector<3> {
+    let change = |along: usize| {
+        let step = Vector::<3>::ith(along, beside);
+        (field(&(x + step)) - field(&(x - step))) / (2.0 * beside)
+    };
+    let [x, y, z] = [0, 1, 2].map(change);
+    let turning = Vector::<3>::new(y[2] - z[1], z[0] - x[2], x[1] - y[0]) * 0.5;
+    if turning.iter().all(|v| v.is_finite()) { turning } else { Vector::<3>::zeros() }
 }
 
 impl Planner<'_> {
@@ -80,8 +97,10 @@ impl Planner<'_> {
         self.add_gravity(system, wrong)?;
         let dynamics: Vec<Option<Dynamics>> =
             steps.iter().map(|step| self.dynamics(problem.steps.get(*step), system)).collect::<Result<_, _>>()?;
+        let tolerance =
+            steps.iter().map(|step| self.tolerance(problem.steps.get(*step), system)).collect::<Result<_, _>>()?;
         let velocities = if self.moves() { self.velocities(numbers, system, wrong)? } else { Vec::new() };
-        Ok(Motion { dynamics, velocities })
+        Ok(Motion { dynamics, tolerance, velocities })
     }
 
     /// Every body that moves has a mass.
@@ -128,6 +147,24 @@ impl Planner<'_> {
             system.loads.push(PlacedLoad { name: GRAVITY.into(), part: Part { body, group: None }, load });
         }
         Ok(())
+    }
+
+    /// The error in time that the increments of a step may add; none where it is not controlled.
+    fn tolerance(&self, step: Option<&problem::Step>, system: &System) -> Result<Option<f64>, CaseError> {
+        let Some(stated) = step.and_then(|s| s.dynamics.as_ref()?.tolerance.as_ref()) else { return Ok(None) };
+        if !(*stated > 0.0 && *stated < 1.0) {
+            return Err(self
+                .problem
+                .error(stated, format!("a tolerance of {stated} is not between 0 and 1"))
+                .help("0.01 is a good start: displacements are right to about a hundredth of the way"));
+        }
+        if system.is_rigid() {
+            return Err(self
+                .problem
+                .error(stated, "the error in time of rigid bodies is not known")
+                .help("leave it out, and compare with twice as many increments"));
+        }
+        Ok(Some(*stated))
     }
 
     /// How bodies move in a step; none where it is one of equilibria.
@@ -228,10 +265,17 @@ impl Planner<'_> {
         } else {
             system.velocities_of(&momenta).map_err(|e| self.unprepared(&e))?
         };
-        // Rigid bodies know their velocities.
         let mut first = 0;
         for body in &system.bodies {
+            // Rigid bodies know their velocities.
             out[first..].iter_mut().zip(body.initial_velocity()).for_each(|(v, own)| *v = own);
+            let key = problem.bodies.get(body.name()).filter(|_| numbers.contains_key(body.name()));
+            if let Some(velocity) = key.and_then(|key| stated(key).1) {
+                let field = self.vector_field(velocity, VELOCITY, &Wrong::default())?;
+                let beside = BESIDE * body.size();
+                let turning = |x: &Point<3>| half_of_curl(&|x| field(x, 0.0), x, beside);
+                body.turn_sections(&mut out[first..first + body.unknowns()], &turning);
+            }
             first += body.unknowns();
         }
         Ok(out)

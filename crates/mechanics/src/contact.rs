@@ -108,7 +108,11 @@ impl Contact {
         let [of_slave, of_master] = [slave.1, master.1].map(|body| body.polyhedron(&body.start()));
         if let (Some(own), Some(_)) = (of_slave, of_master) {
             let known = sites.len();
-            sites.extend((0..own.features.count()).map(|k| Site { patch: (known + k) as u32, xi: [0.0; 2], weight: 1.0 }));
+            sites.extend((0..own.features.count()).map(|k| Site {
+                patch: (known + k) as u32,
+                xi: [0.0; 2],
+                weight: 1.0,
+            }));
         }
         let stiffness = if enforcement.takes_stress() {
             if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {

@@ -5,8 +5,8 @@
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
 use crate::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Carried, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Hold, Kinematics, Load, PlaceError, Slack,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Carried, Constitution, Constraint, ContactSides,
+    Contribution, Elimination, Hold, Kinematics, Load, PlaceError, Slack,
 };
 use crate::dynamics::{Inertial, Mass, SpinInertia};
 use crate::pair::{any_tangent, axis};

@@ -140,11 +140,14 @@ fn beside(
             Feature::Corner(c) => bodies[k].features.corners()[c].normal,
             Feature::Facet(f) => bodies[k].features.facets()[f].normal,
         };
-        let side = match on[1] {
-            Feature::Corner(_) if matches!(on[0], Feature::Edge(_)) => -(bodies[0].rotation * mean(0)).dot(&d),
-            _ => (bodies[1].rotation * mean(1)).dot(&d),
+        let sides = [-(bodies[0].rotation * mean(0)).dot(&d), (bodies[1].rotation * mean(1)).dot(&d)];
+        // Of an edge it is its body that tells the side, of two corners either, as one need not be the nearest of the other.
+        let is_inside = match on {
+            [Feature::Edge(_), _] => sides[0] < 0.0,
+            [_, Feature::Edge(_)] => sides[1] < 0.0,
+            _ => sides[0] < 0.0 && sides[1] < 0.0,
         };
-        let sign = if side < 0.0 { -1.0 } else { 1.0 };
+        let sign = if is_inside { -1.0 } else { 1.0 };
         let gap = sign * distance;
         return Some(Meeting { on, points, gap, normal: d / gap, turning: turning(gap) });
     }
@@ -230,11 +233,16 @@ fn crossings(bodies: [&Placed<'_>; 2], reach: f64, snap: f64) -> Vec<Meeting> {
                 let ends = bodies[k].ends(edge);
                 let [p, q] = ends.map(|x| bodies[1 - k].seen(&x));
                 let there = Aabb::new(p.inf(&q), p.sup(&q));
-                overlap(&there, &near).then_some((number, ends, Aabb::new(ends[0].inf(&ends[1]), ends[0].sup(&ends[1]))))
+                overlap(&there, &near).then_some((
+                    number,
+                    ends,
+                    Aabb::new(ends[0].inf(&ends[1]), ends[0].sup(&ends[1])),
+                ))
             })
             .collect::<Vec<_>>()
     });
-    let deepest = 0.5 * bodies[0].features.width().min(bodies[1].features.width());
+    // Twice the width is the thickness of a square bar.
+    let deepest = 2.0 * bodies[0].features.width().min(bodies[1].features.width());
     let mut out = Vec::new();
     for (a, p, of_a) in &boxes[0] {
         let near = grown(of_a, reach.max(deepest));
@@ -253,7 +261,9 @@ fn crossings(bodies: [&Placed<'_>; 2], reach: f64, snap: f64) -> Vec<Meeting> {
             let Some(found) = crossing(bodies, [*a, *b], false) else { continue };
             // Behind each other are also edges at the far sides of bodies: those are in nothing.
             let is_real = found.gap >= -snap
-                || (found.gap > -deepest && bodies[1].holds(&found.points[0], snap) && bodies[0].holds(&found.points[1], snap));
+                || (found.gap > -deepest
+                    && bodies[1].holds(&found.points[0], snap)
+                    && bodies[0].holds(&found.points[1], snap));
             if found.gap <= reach && is_real {
                 out.push(found);
             }

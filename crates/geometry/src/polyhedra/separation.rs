@@ -84,18 +84,15 @@ impl Placed<'_> {
 
 /// The normal of a plane between two bodies that touch at a feature of each, from the second to the first, and how it turns; none
 /// where they overlap, unless they are known to touch.
-pub(super) fn separation(
-    bodies: [&Placed<'_>; 2],
-    on: [Feature; 2],
-    is_known: bool,
-) -> Option<(Vector<3>, Turning)> {
+pub(super) fn separation(bodies: [&Placed<'_>; 2], on: [Feature; 2], is_known: bool) -> Option<(Vector<3>, Turning)> {
     let [(into, normals, along, mean), (other_into, other_normals, other_along, other_mean)] =
         [0, 1].map(|k| bodies[k].cone(on[k]));
     let mut best: Option<([f64; 2], Vector<3>, Turning)> = None;
     let mut offer = |n: Vector<3>, turning: Turning| {
         let heights = || into.iter().map(|d| n.dot(d)).chain(other_into.iter().map(|d| -n.dot(d)));
         let (least, sum) = (heights().fold(f64::INFINITY, f64::min), heights().sum::<f64>());
-        let is_better = best.as_ref().is_none_or(|(b, ..)| least > b[0] + SAME || (least > b[0] - SAME && sum > b[1] + SAME));
+        let is_better =
+            best.as_ref().is_none_or(|(b, ..)| least > b[0] + SAME || (least > b[0] - SAME && sum > b[1] + SAME));
         if (is_known || least >= -CUTS) && is_better {
             best = Some(([least, sum], n, turning));
         }

@@ -33,9 +33,14 @@ fn flat_boxes_touch_by_the_corners_of_what_they_share() {
     let (wide, long) = (block([1.0, 1.0, 0.5]), block([0.3, 2.0, 0.5]));
     let cases = [(&small, &small), (&small, &wide), (&wide, &small), (&wide, &long), (&long, &wide)];
     for (k, (above, below)) in cases.into_iter().enumerate() {
-        let found = meetings([&placed(above, [0.0, 0.0, 1.0], [0.0; 3]), &placed(below, [0.0; 3], [0.0; 3])], 1e-9, 1e-9);
-        assert!(found.iter().all(|m| (m.normal - Vector::<3>::z()).norm() < 1e-12 && m.gap.abs() < 1e-12), "{k}: {found:?}");
-        let mut places: Vec<[i64; 2]> = found.iter().map(|m| [0, 1].map(|i| (1e6 * m.points[0][i]).round() as i64)).collect();
+        let found =
+            meetings([&placed(above, [0.0, 0.0, 1.0], [0.0; 3]), &placed(below, [0.0; 3], [0.0; 3])], 1e-9, 1e-9);
+        assert!(
+            found.iter().all(|m| (m.normal - Vector::<3>::z()).norm() < 1e-12 && m.gap.abs() < 1e-12),
+            "{k}: {found:?}"
+        );
+        let mut places: Vec<[i64; 2]> =
+            found.iter().map(|m| [0, 1].map(|i| (1e6 * m.points[0][i]).round() as i64)).collect();
         places.sort_unstable();
         places.dedup();
         assert_eq!(places.len(), 4, "{k}: {found:?}");
@@ -77,7 +82,8 @@ fn gaps_and_normals_change_as_by_differences() {
         let Some(now) = found(0.0) else { continue };
         let h = 1e-5;
         let (Some(before), Some(after)) = (found(-h), found(h)) else { panic!("{on:?}") };
-        let moved: Vec<Vector<3>> = (0..2).map(|k| moves[k] + spins[k].cross(&(now.points[k] - at(0.0)[k].centre))).collect();
+        let moved: Vec<Vector<3>> =
+            (0..2).map(|k| moves[k] + spins[k].cross(&(now.points[k] - at(0.0)[k].centre))).collect();
         let moved = moved[0] - moved[1];
         let rate = now.normal_rate(&moved, spins);
         let difference = (after.normal - before.normal) / (2.0 * h);
@@ -102,5 +108,23 @@ fn edges_cross() {
         let found = meetings([&above, &below], 0.05, 1e-9);
         let [one] = found[..] else { panic!("{found:?}") };
         assert!((one.gap - gap).abs() < 1e-14 && (one.normal - Vector::<3>::z()).norm() < 1e-12, "{one:?}");
+    }
+}
+
+/// Bodies that are apart have positive gaps only, however they lie, and the least of them is their distance.
+#[test]
+fn what_is_apart_has_positive_gaps() {
+    let (a, b) = (block([1.0, 0.1, 0.2]), block([0.3, 0.5, 0.1]));
+    for k in 0..200 {
+        let angle = |i: usize| (0.37 * (k * (i + 2)) as f64).sin() * 2.0;
+        let direction = Vector::<3>::new(angle(1), angle(2), angle(3)).normalize() * (1.7 + 0.5 * angle(7).abs());
+        let first = placed(&a, direction.into(), [angle(3), angle(4), angle(5)]);
+        let second = placed(&b, [0.0; 3], [angle(6), angle(8), angle(9)]);
+        let found = meetings([&first, &second], 10.0, 1e-9);
+        let least = found.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
+        let moved = |p: &Placed<'_>| p.features.mesh().vertices().iter().map(|x| p.point(x)).collect();
+        let mesh = |p: &Placed<'_>| TriangleMesh::new(moved(p), p.features.mesh().triangles()).unwrap();
+        let distance = mesh(&first).closest_to_mesh(&mesh(&second)).distance;
+        assert!((least - distance).abs() < 1e-12, "{k}: {least} {distance}");
     }
 }

@@ -36,7 +36,8 @@ impl Pair {
             .flat_map(|side| {
                 let own = carried[side];
                 own.functions.iter().map(move |f| {
-                    let spin = own.spin.iter().find(|s| s.unknown == f.unknown).map_or(Vector::<3>::zeros(), |s| s.value);
+                    let spin =
+                        own.spin.iter().find(|s| s.unknown == f.unknown).map_or(Vector::<3>::zeros(), |s| s.value);
                     let moved = if side == 0 { f.value } else { -f.value };
                     Column { unknown: first[side] + f.unknown, side, local: f.unknown, moved, spin }
                 })

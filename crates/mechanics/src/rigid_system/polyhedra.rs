@@ -9,6 +9,7 @@ use crate::contact::{Contact, Sides};
 use crate::interaction::Bodies;
 use crate::pair::Pair;
 use crate::points::Order;
+use crate::system::{System, SystemState};
 use nalgebra::Rotation3;
 use signorini_geometry::polyhedra::{Feature, Meeting, Placed, meeting, meetings};
 use signorini_geometry::{Matrix, Point};
@@ -69,7 +70,10 @@ impl<'b> Polyhedra<'b> {
 
     /// The measures of a pair.
     pub fn measured(&self, met: &Meeting, contact: &Contact, sides: &Sides<'_>, order: Order) -> Option<Faced> {
-        let carried = [sides.slave.0.carried(sides.slave.1, &met.points[0])?, sides.master.0.carried(sides.master.1, &met.points[1])?];
+        let carried = [
+            sides.slave.0.carried(sides.slave.1, &met.points[0])?,
+            sides.master.0.carried(sides.master.1, &met.points[1])?,
+        ];
         let pair = Pair::of_features(met, [&carried[0], &carried[1]], sides.first, (order, contact.axis));
         let (site, place) = self.name(met);
         Some(Faced { site, place, x: met.points[0], pair })
@@ -90,6 +94,19 @@ impl<'b> Polyhedra<'b> {
         let [a, b] = &self.bodies;
         let back = b.rotation.transpose();
         (back * (a.point(&a.features.middle()) - b.centre), back * a.rotation)
+    }
+}
+
+impl System {
+    /// The least gap of two polyhedra that a contact names, where they are nearest; none of other contacts, and of bodies that are
+    /// apart.
+    pub fn deepest_overlap(&self, contact: usize, state: &SystemState) -> Option<(f64, Point<3>)> {
+        let (first, _) = self.numbering();
+        let at = Bodies { bodies: &self.bodies, states: &state.bodies, first: &first };
+        let contact = self.contacts.get(contact)?.as_points()?;
+        let both = Polyhedra::of(contact, &at.sides(contact))?;
+        let found = both.near(0.0).into_iter().map(|(_, met)| (met.gap, met.points[0]));
+        found.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
 

@@ -147,9 +147,9 @@ pub fn touching<'a>(
             let named = wanted.named.iter().filter(|id| id.contact == number);
             let known: Vec<Meeting> = named.filter_map(|id| both.known(*id)).collect();
             let near = if wanted.reach >= 0.0 { both.near(wanted.reach) } else { Vec::new() };
-            let near = near.into_iter().filter(|(name, met)| {
-                !wanted.named.contains(&id(*name)) && (wanted.by)(id(*name), met.gap)
-            });
+            let near = near
+                .into_iter()
+                .filter(|(name, met)| !wanted.named.contains(&id(*name)) && (wanted.by)(id(*name), met.gap));
             for met in known.into_iter().chain(near.map(|(_, met)| met)) {
                 if let Some(Faced { site, place, x, pair }) = both.measured(&met, contact, &sides, order) {
                     add(id((site, place)), 1.0, x, x, pair);

@@ -7,9 +7,9 @@ use signorini_geometry::mass_properties::MassProperties;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rigid_shape::{Polyhedron, RigidShape};
 use signorini_geometry::{Point, Vector};
+use signorini_mechanics::Part;
 use signorini_mechanics::rigid_body::{Motion, RigidBody, RigidMass, RigidSite};
 use signorini_mechanics::system::{PlacedLoad, System, TimedLoad};
-use signorini_mechanics::Part;
 use std::sync::Arc;
 
 /// A box of density one about a point, turned.
@@ -33,7 +33,9 @@ fn block(half: [f64; 3], at: Vector<3>, turn: Vector<3>, motion: Motion) -> Rigi
 /// Gravity of ten on every free body.
 fn fall(system: &mut System) {
     for k in 0..system.bodies.len() {
-        let Some(mass) = system.bodies[k].mass(&[]).unwrap().filter(|_| system.bodies[k].unknowns() > 0) else { continue };
+        let Some(mass) = system.bodies[k].mass(&[]).unwrap().filter(|_| system.bodies[k].unknowns() > 0) else {
+            continue;
+        };
         let weight = v(0.0, 0.0, -10.0 * mass.blocks[0].1[0]);
         let load = TimedLoad::Force(Arc::new(move |_, _| weight));
         system.loads.push(PlacedLoad { name: "gravity".into(), part: Part::from(k), load });

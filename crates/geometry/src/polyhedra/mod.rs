@@ -179,9 +179,8 @@ impl Features {
             let point = out.mesh.vertices()[vertex as usize];
             let number = *out.corner_of[vertex as usize].get_or_insert(out.corners.len());
             if number == out.corners.len() {
-                let nothing = Vec::new;
-                let normal = Vector::<3>::zeros();
-                out.corners.push(Corner { point, along: nothing(), facets: Vec::new(), hollow: Vec::new(), normal });
+                let (along, normal) = (Vec::new(), Vector::<3>::zeros());
+                out.corners.push(Corner { point, along, facets: Vec::new(), hollow: Vec::new(), normal });
             }
             let own = &mut out.corners[number];
             own.along.push(if ends[0] == point { along } else { -along });

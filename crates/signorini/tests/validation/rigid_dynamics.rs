@@ -210,7 +210,7 @@ dynamics = {{}}
     let both = "[\"upper\", \"lower\"]";
     let found = error(&case(deep, across, both, 1.0, 0.0));
     assert!(found.message.contains("deep inside `lower`"), "{}", found.message);
-    let tresca = case(cube, base, both, 1.0, 0.0).replace("restitution = 0.0", "friction.tresca = { stress = 1 }");
+    let tresca = case(cube, base, both, 1.0, 0.0).replace("restitution = 0.0", "friction.tresca = { limit = 1 }");
     let found = error(&tresca);
     assert!(found.message.contains("does not grow with pressure"), "{}", found.message);
 }

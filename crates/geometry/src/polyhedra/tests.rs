@@ -116,7 +116,7 @@ fn edges_cross() {
 fn what_is_apart_has_positive_gaps() {
     let (a, b) = (block([1.0, 0.1, 0.2]), block([0.3, 0.5, 0.1]));
     for k in 0..200 {
-        let angle = |i: usize| (0.37 * (k * (i + 2)) as f64).sin() * 2.0;
+        let angle = |i: usize| (0.37 * ((k + 1) * (i + 2)) as f64).sin() * 2.0;
         let direction = Vector::<3>::new(angle(1), angle(2), angle(3)).normalize() * (1.7 + 0.5 * angle(7).abs());
         let first = placed(&a, direction.into(), [angle(3), angle(4), angle(5)]);
         let second = placed(&b, [0.0; 3], [angle(6), angle(8), angle(9)]);

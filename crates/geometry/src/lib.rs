@@ -21,6 +21,7 @@
 //! - [`height_field`]: heights over a plane, as bodies are seen from above or below.
 //! - [`grid_spline`]: functions given by values on a grid.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
+//! - [`polyhedra`]: facets, edges and corners of closed triangle meshes, and where two of them meet.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
@@ -42,6 +43,7 @@ pub mod mesh;
 pub mod outline;
 pub(crate) mod patch;
 pub mod polygon;
+pub mod polyhedra;
 pub mod rigid;
 pub mod rigid_shape;
 pub mod rule;

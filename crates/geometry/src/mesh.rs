@@ -198,6 +198,11 @@ impl TriangleMesh {
         &self.triangles
     }
 
+    /// Edge numbers of a triangle: from its first corner to its second, from its first to its third, from its second to its third.
+    pub fn edges(&self, triangle: usize) -> [u32; 3] {
+        self.edges[triangle]
+    }
+
     pub fn edge_count(&self) -> usize {
         self.edge_count
     }

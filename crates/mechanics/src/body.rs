@@ -14,7 +14,8 @@ use crate::curve::Curve;
 pub use crate::dynamics::{Inertial, Mass};
 use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::polyhedra::Placed;
+use signorini_geometry::{Matrix, Point, Vector};
 
 /// What a body carries from one increment to the next, as plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -326,6 +327,18 @@ pub trait Elimination {
     }
 }
 
+/// What moves a point of a rigid body.
+#[derive(Clone, Debug, Default)]
+pub struct Carried {
+    /// Changes of its position, and spins, by unknown.
+    pub functions: Vec<Function>,
+    pub spin: Vec<Function>,
+    /// Second derivatives of the position.
+    pub bends: Vec<SecondDerivative>,
+    /// The rotation of the body.
+    pub frame: Matrix<3>,
+}
+
 /// What contact may ask of the surface of a body, beyond points and a master.
 pub trait ContactSides {
     /// A place as a curve, if it is one, such as a rope, a beam, an edge of a solid: contact between curves is for such.
@@ -362,6 +375,16 @@ pub trait ContactSides {
     /// points of its own quadrature. None where that is not known.
     fn points_apart(&self, _on: Option<&str>) -> Vec<(Point<3>, f64)> {
         Vec::new()
+    }
+
+    /// A rigid body that facets, edges and corners bound, where it is in a state; none of others.
+    fn polyhedron<'a>(&'a self, _state: &BodyState) -> Option<Placed<'a>> {
+        None
+    }
+
+    /// What moves a point of a rigid body, which is there in a state; none of others.
+    fn carried(&self, _state: &BodyState, _x: &Point<3>) -> Option<Carried> {
+        None
     }
 
     /// Tests a place at points of quadrature at most as far apart as told for the points near them, from now on. Bodies whose

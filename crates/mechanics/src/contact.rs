@@ -104,6 +104,16 @@ impl Contact {
         }
         let mut sites = slave.1.sites(slave.0.group.as_deref(), sampling)?;
         master.1.master(master.0.group.as_deref(), &master.1.start())?;
+        // Polyhedra touch by all of their features.
+        let [of_slave, of_master] = [slave.1, master.1].map(|body| body.polyhedron(&body.start()));
+        if let (Some(own), Some(_)) = (of_slave, of_master) {
+            let known = sites.len();
+            sites.extend((0..own.features.count()).map(|k| Site {
+                patch: (known + k) as u32,
+                xi: [0.0; 2],
+                weight: 1.0,
+            }));
+        }
         let stiffness = if enforcement.takes_stress() {
             if sites.first().is_some_and(|s| slave.1.traction(&slave.1.start(), s).is_none()) {
                 let message =

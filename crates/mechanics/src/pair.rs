@@ -21,6 +21,7 @@
 mod along;
 mod arc;
 mod cut;
+mod features;
 mod gap;
 mod measures;
 mod slip;

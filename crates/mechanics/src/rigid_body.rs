@@ -5,8 +5,8 @@
 //! second derivatives along geodesics; with a residual `r` the derivative of its spin components is that less `½ r ×`.
 
 use crate::body::{
-    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Hold, Kinematics, Load, PlaceError, Slack,
+    Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Carried, Constitution, Constraint, ContactSides,
+    Contribution, Elimination, Hold, Kinematics, Load, PlaceError, Slack,
 };
 use crate::dynamics::{Inertial, Mass, SpinInertia};
 use crate::pair::{any_tangent, axis};
@@ -16,6 +16,7 @@ use crate::points::{
 };
 use crate::rotation;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
+use signorini_geometry::polyhedra::Placed;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::{Matrix, Point, Vector};
@@ -283,16 +284,22 @@ impl Body for RigidBody {
     }
 
     fn placed(&self, state: &BodyState, site: &Site) -> SlavePoint {
-        let own = &self.sites[site.patch as usize];
         let pose = Pose::of(state);
         let frame = pose.matrix();
+        let own = &match (self.sites.get(site.patch as usize), self.shape.features()) {
+            (None, Some(features)) => {
+                let x = features.position(features.feature(site.patch as usize - self.sites.len()));
+                RigidSite { x, outward: None, radius: 0.0, weight: site.weight }
+            }
+            _ => self.sites[site.patch as usize],
+        };
         let arm = frame * (own.x - self.centre);
         let (functions, spin, bends) = self.functions(&arm);
         SlavePoint {
             x: pose.centre + arm,
             outward: own.outward.map(|n| frame * n),
             averaged: None,
-            rests: false,
+            rests: site.patch as usize >= self.sites.len(),
             tangent: None,
             radius: own.radius,
             turn: Some(pose.turn),
@@ -398,7 +405,20 @@ impl Inertial for RigidBody {
 
 impl Elimination for RigidBody {}
 
-impl ContactSides for RigidBody {}
+impl ContactSides for RigidBody {
+    fn polyhedron<'a>(&'a self, state: &BodyState) -> Option<Placed<'a>> {
+        // A body without sites is a hole: other bodies are within it.
+        let features = self.shape.features().filter(|_| !self.sites.is_empty())?;
+        let pose = Pose::of(state);
+        Some(Placed { features, rotation: pose.matrix(), origin: self.centre, centre: pose.centre })
+    }
+
+    fn carried(&self, state: &BodyState, x: &Point<3>) -> Option<Carried> {
+        let pose = Pose::of(state);
+        let (functions, spin, bends) = self.functions(&(x - pose.centre));
+        Some(Carried { functions, spin, bends, frame: pose.matrix() })
+    }
+}
 
 impl Slack for RigidBody {}
 

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 58] = [
+pub const GALLERY: [Example; 60] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -77,6 +77,8 @@ pub const GALLERY: [Example; 58] = [
     example!("impact", "a bar strikes a wall: waves, and the energy that it came with"),
     example!("cradle", "Newton's cradle: rigid balls in motion, with impacts that follow each other"),
     example!("dice", "a die is thrown: impacts, friction, and rest on a face"),
+    example!("duels", "blades strike each other by points, edges and flats: each of the six pairs in turn"),
+    example!("arch", "an arch of 25 stones stands by friction and its weight"),
 ];
 
 /// A file that a case of the gallery names.

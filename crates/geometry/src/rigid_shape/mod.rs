@@ -11,7 +11,7 @@
 //! | [`Cone`] of half angle `γ` about `k` | `ρ cos γ - z sin γ` | `tt cos γ / ρ`, `t = k × e_ρ` |
 //! | [`Torus`] about `k` | `d - r`, `d = \|x - R e_ρ\|` | `mm / d + tt (n·e_ρ) / ρ`, `m = t × n` |
 //! | [`Revolution`] of a profile about `k` | closest point of the profile | `mm S/(1 + g S) + tt (n·e_ρ) / ρ` |
-//! | [`Ellipsoid`], [`Paraboloid`], [`ClosestPoints`] | certified closest point | of the surface at that point |
+//! | [`Ellipsoid`], [`Paraboloid`], [`Polyhedron`], [`ClosestPoints`] | certified closest point | of the surface at that point |
 //! | [`ImplicitSurface`](crate::implicit_surface::ImplicitSurface) | Newton on the foot | `S (I + g S)⁻¹` |
 //!
 //! Where a shape has no tangent plane (on an axis, at an apex) the normal is one of those that it has beside that place,
@@ -26,6 +26,7 @@ mod height;
 mod implicit;
 mod paraboloid;
 mod plane;
+mod polyhedron;
 mod revolution;
 mod sphere;
 #[cfg(test)]
@@ -40,12 +41,14 @@ pub use gap::GapJet;
 pub use height::NoHeight;
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
+pub use polyhedron::Polyhedron;
 pub use revolution::{Profile, ProfileJet, Revolution};
 pub use sphere::Sphere;
 pub use torus::Torus;
 
 use crate::height_field::{HeightField, View};
 use crate::mass_properties::MassProperties;
+use crate::polyhedra::Features;
 use crate::{Aabb, Jet, Point, Vector};
 use std::sync::Arc;
 
@@ -78,6 +81,11 @@ pub trait RigidShape: Send + Sync {
 
     /// Volume, centre of mass and moments of inertia of the body in space; none of one without an end, or that has no closed form.
     fn mass_properties(&self) -> Option<MassProperties> {
+        None
+    }
+
+    /// Its facets, edges and corners, if these are all that bounds it.
+    fn features(&self) -> Option<&Features> {
         None
     }
 

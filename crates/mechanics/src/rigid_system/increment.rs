@@ -1,6 +1,7 @@
 //! From one state of rest to the next.
 
 use super::motion::{FIRST, LONGEST, Motion, SHORTEST, Stepped};
+use super::polyhedra::free_share;
 use super::stability::Leaving;
 use super::touching::{Id, along, twists};
 use crate::equilibrium::carried_away;
@@ -198,6 +199,10 @@ impl<'a, 'b> Increment<'a, 'b> {
     /// Whether something would pass through something else on a step.
     fn passes(&self, from: &SystemState, found: &Stepped<'_>) -> Result<bool, AssemblyError> {
         let to = SystemState { bodies: found.bodies.clone(), ..from.clone() };
+        let between = [&from.bodies, &found.bodies].map(|states| self.motion.bodies_of(states));
+        if free_share(&self.motion.contacts, between) < 1.0 {
+            return Ok(true);
+        }
         Ok(self.motion.system.first_passage(from, &to)?.is_some())
     }
 

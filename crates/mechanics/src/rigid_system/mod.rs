@@ -1,6 +1,6 @@
 //! Systems in which all that moves is rigid: contact and friction as a cone complementarity problem.
 //!
-//! - `touching`: points that may touch, their gaps and slips;
+//! - `touching`: points that may touch, their gaps and slips; `polyhedra`: pairs of facets, edges and corners;
 //! - `complementarity`: contact forces of a linearised system;
 //! - `rest`: whether bodies may rest where they are;
 //! - `motion`: implicit steps of an overdamped motion in pseudo-time;
@@ -15,6 +15,7 @@ mod complementarity;
 mod dynamics;
 mod increment;
 mod motion;
+mod polyhedra;
 mod rest;
 mod results;
 mod stability;

@@ -11,7 +11,7 @@
 
 use super::complementarity::{Block, Complementarity, Kind};
 use super::rest::rest;
-use super::touching::{Id, Touching, Twists, along, touching};
+use super::touching::{Id, Touching, Twists, Wanted, along, touching};
 use crate::body::{BodyState, Contribution};
 use crate::contact::Contact;
 use crate::interaction::Bodies;
@@ -187,7 +187,7 @@ impl<'a> Motion<'a> {
             return BTreeMap::new();
         }
         let bodies = along(self.bodies_of(&from.bodies), from, (step, twists), share);
-        let wanted = |id: Id, _: f64| ids.contains(&id);
+        let wanted = Wanted { by: &|id, _| ids.contains(&id), reach: NEAR * self.size, named: &BTreeSet::new() };
         let found = touching(&self.contacts, self.bodies_of(&bodies), twists, Order::First, &wanted);
         found.into_iter().map(|p| (p.id, p)).collect()
     }
@@ -236,7 +236,8 @@ impl<'a> Motion<'a> {
         for iteration in 1..=MOST_ITERATIONS {
             let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);
             let now = self.bodies_of(&bodies);
-            let wanted = |id: Id, gap: f64| gap < NEAR * self.size || seen.contains(&id);
+            let by = |id: Id, gap: f64| gap < NEAR * self.size || seen.contains(&id);
+            let wanted = Wanted { by: &by, reach: NEAR * self.size, named: &BTreeSet::new() };
             let points = touching(&self.contacts, now, twists, Order::Second, &wanted);
             seen.extend(points.iter().map(|p| p.id));
             let slips = self.slips(from, (&step, twists), &points, &mut start);
@@ -324,7 +325,8 @@ impl<'a> Motion<'a> {
         let n = self.count();
         let still: Twists = vec![None; bodies.len()];
         let touches = TOUCHES * self.size;
-        let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &|_, gap| gap <= touches);
+        let wanted = Wanted { by: &|_, gap| gap <= touches, reach: touches, named: &BTreeSet::new() };
+        let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &wanted);
         let (single, coupled) = self.system.held(bodies, time)?;
         let lacks = |h: &Held| h.constraint.violation.abs() > touches;
         if points.iter().any(|p| p.pair.gap < -touches) || single.iter().chain(&coupled).any(lacks) {

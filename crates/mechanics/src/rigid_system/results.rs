@@ -3,7 +3,8 @@
 use super::complementarity::Block;
 use super::increment::SoFar;
 use super::motion::{Loaded, Motion, Stepped};
-use super::touching::{Twists, touching};
+use super::polyhedra::Polyhedra;
+use super::touching::{Id, Touching, Twists, Wanted, touching};
 use crate::body::BodyState;
 use crate::contact::{Contact, SiteMemory};
 use crate::increment::IncrementResult;
@@ -13,6 +14,7 @@ use crate::system::{AssemblyError, Held, System, SystemState};
 use nalgebra::DMatrix;
 use signorini_contact::Status;
 use signorini_geometry::Vector;
+use std::collections::BTreeSet;
 
 /// Share of the limit of friction from which a point slips.
 const AT_LIMIT: f64 = 1e-8;
@@ -154,39 +156,50 @@ impl<'a> Motion<'a> {
     ) -> Vec<SiteResult> {
         let still: Twists = vec![None; state.bodies.len()];
         let only = [self.contacts[contact]];
-        let nearest = touching(&only, self.bodies_of(&state.bodies), &still, Order::First, &|id, _| id.place == 0);
+        let at = self.bodies_of(&state.bodies);
+        let is_of_polyhedra = Polyhedra::of(only[0], &at.sides(only[0])).is_some();
+        let by = |id: Id, _: f64| id.place == 0 || is_of_polyhedra;
+        let wanted = Wanted { by: &by, reach: self.size, named: &BTreeSet::new() };
+        let mut nearest = touching(&only, at, &still, Order::First, &wanted);
+        let open = |p: &Touching<'_>| SiteResult {
+            x: p.centre,
+            radius: (p.centre - p.x).norm(),
+            normal: p.pair.normal,
+            weight: p.weight,
+            gap: Some(p.pair.gap),
+            ..SiteResult::default()
+        };
+        let carrying = |l: &Loaded<'_>, open: SiteResult| {
+            let site = l.point.id.site;
+            let slipped = so_far.slipped.get(&(contact, site)).copied().unwrap_or_default();
+            let utilisation = l.utilisation();
+            let slips = l.point.law.is_none() || (utilisation > 1.0 - AT_LIMIT && slipped.path > MOVED * self.size);
+            SiteResult {
+                x: l.point.centre,
+                normal: l.point.pair.normal,
+                gap: Some(l.point.pair.gap),
+                pressure: l.force[0] / open.weight,
+                friction: -l.friction() / open.weight,
+                status: if slips { Status::Slip } else { Status::Stick },
+                increment: slipped.slip,
+                slip: slipped_before(self.contacts[contact], site) + slipped.path,
+                utilisation,
+                ..open
+            }
+        };
+        let loaded = || found.loaded.iter().filter(|l| l.point.id.contact == contact && l.force[0] > 0.0);
+        if is_of_polyhedra {
+            // The pairs of features that carry, or the nearest.
+            nearest.sort_by(|a, b| a.pair.gap.total_cmp(&b.pair.gap));
+            let out: Vec<_> = loaded().map(|l| carrying(l, open(&l.point))).collect();
+            return if out.is_empty() { nearest.first().map(open).into_iter().collect() } else { out };
+        }
         let mut out = Vec::new();
         for p in nearest {
-            let site = p.id.site;
-            let open = SiteResult {
-                x: p.centre,
-                radius: (p.centre - p.x).norm(),
-                normal: p.pair.normal,
-                weight: p.weight,
-                gap: Some(p.pair.gap),
-                ..SiteResult::default()
-            };
-            let own = |l: &&Loaded<'_>| l.point.id.contact == contact && l.point.id.site == site && l.force[0] > 0.0;
             let before = out.len();
-            for l in found.loaded.iter().filter(own) {
-                let slipped = so_far.slipped.get(&(contact, site)).copied().unwrap_or_default();
-                let utilisation = l.utilisation();
-                let slips = l.point.law.is_none() || (utilisation > 1.0 - AT_LIMIT && slipped.path > MOVED * self.size);
-                out.push(SiteResult {
-                    x: l.point.centre,
-                    normal: l.point.pair.normal,
-                    gap: Some(l.point.pair.gap),
-                    pressure: l.force[0] / p.weight,
-                    friction: -l.friction() / p.weight,
-                    status: if slips { Status::Slip } else { Status::Stick },
-                    increment: slipped.slip,
-                    slip: slipped_before(self.contacts[contact], site) + slipped.path,
-                    utilisation,
-                    ..open
-                });
-            }
+            out.extend(loaded().filter(|l| l.point.id.site == p.id.site).map(|l| carrying(l, open(&p))));
             if out.len() == before {
-                out.push(open);
+                out.push(open(&p));
             }
         }
         out

@@ -1,5 +1,6 @@
 //! The points where rigid bodies may touch in a state: gaps, slips and what moves them.
 
+use super::polyhedra::{Faced, Polyhedra};
 use crate::contact::{Contact, axes};
 use crate::interaction::Bodies;
 use crate::pair::{Pair, PairGeometry, Stuck};
@@ -9,7 +10,9 @@ use crate::rotation;
 use crate::system::SystemState;
 use nalgebra::DMatrix;
 use signorini_contact::Law;
+use signorini_geometry::polyhedra::Meeting;
 use signorini_geometry::{Point, Vector};
+use std::collections::BTreeSet;
 
 /// Which point of a contact it is: contact, site, and number of the place that the site may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,25 +106,65 @@ pub fn along(
 /// Sine below which a direction does not move.
 const STILL: f64 = 1e-8;
 
-/// The points of all contacts that are `wanted` by their gap.
+/// Which points are asked for.
+pub struct Wanted<'w> {
+    /// By name and gap.
+    pub by: &'w dyn Fn(Id, f64) -> bool,
+    /// How far apart polyhedra are looked at.
+    pub reach: f64,
+    /// Pairs of polyhedra that are asked for wherever they are: they touched in a state before.
+    pub named: &'w BTreeSet<Id>,
+}
+
+/// The points of all contacts that are wanted.
 pub fn touching<'a>(
     contacts: &[&'a Contact],
     at: Bodies<'_>,
     twists: &Twists,
     order: Order,
-    wanted: &dyn Fn(Id, f64) -> bool,
+    wanted: &Wanted<'_>,
 ) -> Vec<Touching<'a>> {
     let mut out = Vec::new();
     for (number, contact) in contacts.iter().enumerate() {
         let sides = at.sides(contact);
-        let Ok(master) = sides.master.0.master(contact.master.group.as_deref(), sides.master.1) else { continue };
         let friction = contact.law.friction.is_some();
+        let mut add = |id: Id, weight: f64, centre: Point<3>, x: Point<3>, pair: Pair| {
+            let velocity = |body: usize| match &twists[body] {
+                Some([moved, turned]) => moved + turned.cross(&(x - Pose::of(&at.states[body]).centre)),
+                None => Vector::<3>::zeros(),
+            };
+            let driven = velocity(contact.slave.body) - velocity(contact.master.body);
+            let driven_gap = pair.normal.dot(&driven);
+            let driven = driven - pair.normal * driven_gap;
+            let axes = if friction { axes(&pair).0 } else { [Vector::<3>::zeros(); 2] };
+            let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
+            let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
+            let law = contact.law.friction.as_deref();
+            out.push(Touching { id, law, weight, centre, x, pair, axes, moves, driven, driven_gap });
+        };
+        if let Some(both) = Polyhedra::of(contact, &sides) {
+            let id = |(site, place): (usize, usize)| Id { contact: number, site, place };
+            let named = wanted.named.iter().filter(|id| id.contact == number);
+            let known: Vec<Meeting> = named.filter_map(|id| both.known(*id)).collect();
+            let near = if wanted.reach >= 0.0 { both.near(wanted.reach) } else { Vec::new() };
+            let near = near
+                .into_iter()
+                .filter(|(name, met)| !wanted.named.contains(&id(*name)) && (wanted.by)(id(*name), met.gap));
+            for met in known.into_iter().chain(near.map(|(_, met)| met)) {
+                if let Some(Faced { site, place, x, pair }) = both.measured(&met, contact, &sides, order) {
+                    add(id((site, place)), 1.0, x, x, pair);
+                }
+            }
+            continue;
+        }
+        let Ok(master) = sides.master.0.master(contact.master.group.as_deref(), sides.master.1) else { continue };
         for (k, site) in contact.sites().iter().enumerate() {
             let placed = sides.slave.0.placed(sides.slave.1, site);
             for (place, met) in master.places(&placed.x).into_iter().enumerate() {
                 let id = Id { contact: number, site: k, place };
                 let MasterProjection::Rigid(foot) = &met else { continue };
-                if !wanted(id, foot.jet.gap - placed.radius) {
+                let gap = foot.jet.gap - placed.radius;
+                if !(wanted.named.contains(&id) || (wanted.by)(id, gap)) {
                     continue;
                 }
                 let stuck = Stuck { point: foot.point, ..Stuck::default() };
@@ -136,20 +179,7 @@ pub fn touching<'a>(
                     axis: contact.axis,
                 };
                 let Ok(pair) = encounter.measure(order) else { continue };
-                let x = placed.x - pair.normal * placed.radius;
-                let velocity = |body: usize| match &twists[body] {
-                    Some([moved, turned]) => moved + turned.cross(&(x - Pose::of(&at.states[body]).centre)),
-                    None => Vector::<3>::zeros(),
-                };
-                let driven = velocity(contact.slave.body) - velocity(contact.master.body);
-                let driven_gap = pair.normal.dot(&driven);
-                let driven = driven - pair.normal * driven_gap;
-                let axes = if friction { axes(&pair).0 } else { [Vector::<3>::zeros(); 2] };
-                let most = pair.slip.iter().map(|s| s.norm()).fold(0.0, f64::max);
-                let moves = axes.map(|e| pair.slip.iter().any(|s| e.dot(s).abs() > STILL * most));
-                let law = contact.law.friction.as_deref();
-                let weight = site.weight;
-                out.push(Touching { id, law, weight, centre: placed.x, x, pair, axes, moves, driven, driven_gap });
+                add(id, site.weight, placed.x, placed.x - pair.normal * placed.radius, pair);
             }
         }
     }

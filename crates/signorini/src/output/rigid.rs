@@ -1,7 +1,7 @@
 //! Rigid bodies as files for ParaView: their surface, in the plane their edge.
 
 use super::OutputError;
-use super::level::{region, surface};
+use super::level::region;
 use super::page::ROUNDING;
 use super::vtk::to_bytes;
 use signorini_contact::GapJet;
@@ -11,35 +11,38 @@ use vtkio::model::{DataSet, PolyDataPiece, VertexNumbers};
 /// The distance to a rigid body, negative inside.
 pub type Gap<'a> = &'a (dyn Fn(&Vector<3>) -> GapJet<3> + Sync);
 
-/// A VTP of a rigid body within a box, which has no extent along z in the plane.
+/// A VTP of the edge of a rigid body in the plane, within a box.
 ///
 /// # Errors
 /// What `vtkio` cannot write.
-pub fn file(gap: Gap<'_>, corners: [Vector<3>; 2], in_space: bool) -> Result<Vec<u8>, OutputError> {
-    let (points, cells) = if in_space {
-        let (points, _, triangles) = surface(gap, corners);
-        (points, triangles.iter().map(|t| t.to_vec()).collect())
-    } else {
-        joined(&region(gap, corners).1, ROUNDING * (corners[1] - corners[0]).max())
-    };
-    let connectivity: Vec<u64> = cells.iter().flatten().map(|&k| u64::from(k)).collect();
+pub fn in_plane(gap: Gap<'_>, corners: [Vector<3>; 2]) -> Result<Vec<u8>, OutputError> {
+    let (points, lines) = joined(&region(gap, corners).1, ROUNDING * (corners[1] - corners[0]).max());
+    let (mut piece, topology) = piece(&points, &lines);
+    piece.lines = topology;
+    to_bytes("rigid", DataSet::inline(piece))
+}
+
+/// A VTP of the surface of a rigid body, from its triangles.
+///
+/// # Errors
+/// What `vtkio` cannot write.
+pub fn in_space(points: &[Vector<3>], triangles: &[[u32; 3]]) -> Result<Vec<u8>, OutputError> {
+    let (mut piece, topology) = piece(points, triangles);
+    piece.polys = topology;
+    to_bytes("rigid", DataSet::inline(piece))
+}
+
+/// Points, and what cells there are between them.
+fn piece(points: &[Vector<3>], cells: &[impl AsRef<[u32]>]) -> (PolyDataPiece, Option<VertexNumbers>) {
+    let connectivity: Vec<u64> = cells.iter().flat_map(|c| c.as_ref()).map(|&k| u64::from(k)).collect();
     let offsets: Vec<u64> = (cells.iter())
-        .scan(0, |at, c: &Vec<u32>| {
-            *at += c.len() as u64;
+        .scan(0, |at, c| {
+            *at += c.as_ref().len() as u64;
             Some(*at)
         })
         .collect();
-    let topology = Some(VertexNumbers::XML { connectivity, offsets });
-    let mut piece = PolyDataPiece {
-        points: points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into(),
-        ..PolyDataPiece::default()
-    };
-    if in_space {
-        piece.polys = topology
-    } else {
-        piece.lines = topology
-    }
-    to_bytes("rigid", DataSet::inline(piece))
+    let points = points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into();
+    (PolyDataPiece { points, ..PolyDataPiece::default() }, Some(VertexNumbers::XML { connectivity, offsets }))
 }
 
 /// Pieces with the points in which they meet, each once: points as near as `near` are one.

@@ -2,6 +2,7 @@
 
 use super::body_fields::{of_body, of_solid};
 use super::camera::bounds;
+use super::level::surface;
 use crate::fields::Fields;
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::problem::{Body, Space};
@@ -53,9 +54,30 @@ pub struct RigidShown {
     pub size: f64,
     pub centre: Vector<3>,
     pub is_free: bool,
+    /// Its triangles, of a body of flat faces.
+    pub mesh: Option<(Vec<Vector<3>>, Vec<[u32; 3]>)>,
 }
 
 impl RigidShown {
+    /// Its surface within a box: points, the normals at the corners of each triangle, and triangles. Of a body of flat faces that lies in the
+    /// box, or is free, its own triangles.
+    pub fn surface(&self, room: [Vector<3>; 2]) -> (Vec<Vector<3>>, Vec<[Vector<3>; 3]>, Vec<[u32; 3]>) {
+        let [low, high] = self.room(room);
+        let lies_within = |x: &Vector<3>| (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i]);
+        if let Some((points, triangles)) = &self.mesh
+            && (self.is_free || points.iter().all(lies_within))
+        {
+            let normal = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|k| points[k as usize]);
+                [(b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(); 3]
+            };
+            return (points.clone(), triangles.iter().map(normal).collect(), triangles.clone());
+        }
+        let (points, normals, triangles) = surface(self.gap.as_ref(), [low, high]);
+        let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
+        (points, normals, triangles)
+    }
+
     /// The box in which it is drawn: a free body that is not much larger than what is shown is drawn whole, and as fine as its size
     /// asks for.
     pub fn room(&self, shown: [Vector<3>; 2]) -> [Vector<3>; 2] {
@@ -123,6 +145,11 @@ impl SystemShown {
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
+                    let mesh = shape.features().map(|features| {
+                        let mesh = features.mesh();
+                        let placed = mesh.vertices().iter().map(|x| now + rotation * (x - origin));
+                        (placed.collect(), mesh.triangles().to_vec())
+                    });
                     let gap = move |x: &Vector<3>| {
                         let found = shape.gap(&(origin + rotation.transpose() * (x - now)));
                         GapJet {
@@ -137,6 +164,7 @@ impl SystemShown {
                         size: body.size(),
                         centre: now,
                         is_free: *is_free,
+                        mesh,
                     });
                 }
             }

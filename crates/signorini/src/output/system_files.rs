@@ -163,8 +163,13 @@ pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(Str
         room.iter_mut().for_each(|x| x.z = 0.0);
     }
     let file = |body: &RigidShown| {
-        let room = if in_space { body.room(room) } else { room };
-        Ok((body.name.clone(), rigid::file(body.gap.as_ref(), room, in_space)?))
+        let file = if in_space {
+            let (points, _, triangles) = body.surface(room);
+            rigid::in_space(&points, &triangles)
+        } else {
+            rigid::in_plane(body.gap.as_ref(), room)
+        };
+        Ok((body.name.clone(), file?))
     };
     shown.rigid.iter().map(file).collect()
 }

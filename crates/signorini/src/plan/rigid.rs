@@ -13,8 +13,9 @@ use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
 use signorini_geometry::implicit::Function;
 use signorini_geometry::implicit_surface::ImplicitSurface;
+use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, RigidShape};
+use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, Polyhedron, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use signorini_paths::smooth_mesh::SmoothMesh;
@@ -273,16 +274,15 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
         Ok(match shape {
             Shape::Stl(key) => {
                 self.check_in_space(shape, "triangulated surface")?;
-                Arc::new(ClosestPoints { shape: planner.closed_mesh(key)?.into(), normals: Normals::Outward })
+                polyhedron(planner.closed_mesh(key)?)
             }
             Shape::File(key) => {
                 self.check_in_space(shape, "triangulated surface")?;
-                Arc::new(ClosestPoints { shape: planner.boundary_of_file(key)?.into(), normals: Normals::Outward })
+                polyhedron(planner.boundary_of_file(key)?)
             }
             Shape::Triangles(key) => {
                 self.check_in_space(shape, "triangulated surface")?;
-                let normals = Normals::Outward;
-                Arc::new(ClosestPoints { shape: planner.surface_of_arrays(key)?.into(), normals })
+                polyhedron(planner.surface_of_arrays(key)?)
             }
             Shape::Custom(custom) => Arc::clone(&custom.0),
             Shape::Nurbs(key) => {
@@ -360,6 +360,14 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             }
             _ => return Err(planner.unavailable(shape, "this shape in contact with a solid")),
         })
+    }
+}
+
+/// The body within a triangle mesh; beside one that is not closed.
+fn polyhedron(mesh: TriangleMesh) -> Arc<dyn RigidShape> {
+    match Polyhedron::new(mesh.clone()) {
+        Some(shape) => Arc::new(shape),
+        None => Arc::new(ClosestPoints { shape: mesh.into(), normals: Normals::Outward }),
     }
 }
 

@@ -165,6 +165,56 @@ dynamics = {{}}
     close(&step["free_bodies"]["block"]["displacement"][0], 1.5, 1e-9);
 }
 
+/// Blocks as meshes: a bar that falls flat across another one rebounds to where it came from, though neither has a corner over
+/// the other; a wide block does so on a narrow one, whichever is named first; a block on one of its size, corner on corner, rests.
+#[test]
+fn blocks_meet_by_facets_edges_and_corners() {
+    let case = |upper: [[f64; 3]; 2], lower: [[f64; 3]; 2], between: &str, to: f64, restitution: f64| {
+        format!(
+            r#"
+space = "3d"
+gravity = [0, 0, -10]
+[bodies.upper.rigid]
+{}
+motion.free = {{ density = 1000 }}
+[bodies.lower.rigid]
+{}
+[contacts.touch]
+between = {between}
+restitution = {restitution:?}
+[[steps]]
+to = {to:?}
+increments = 4
+dynamics = {{}}
+"#,
+            block(upper),
+            block(lower)
+        )
+    };
+    let bar = [[-1.0, -0.1, 0.2], [1.0, 0.1, 0.4]];
+    let across = [[-0.1, -1.0, -0.2], [0.1, 1.0, 0.0]];
+    let wide = [[-1.0, -1.0, 0.2], [1.0, 1.0, 0.6]];
+    for (upper, lower) in [(bar, across), (wide, across)] {
+        for between in ["[\"upper\", \"lower\"]", "[\"lower\", \"upper\"]"] {
+            let found = summary(&case(upper, lower, between, 0.4, 1.0), &set(&[]));
+            close(&last_step(&found)["free_bodies"]["upper"]["displacement"][2], 0.0, 1e-9);
+            close(&last_step(&found)["kinetic_energy"], 0.0, 1e-9);
+        }
+    }
+    let (cube, base) = ([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], [[0.0, 0.0, -1.0], [1.0, 1.0, 0.0]]);
+    let found = summary(&case(cube, base, "[\"upper\", \"lower\"]", 100.0, 0.0), &set(&[]));
+    close(&last_step(&found)["contacts"]["touch"]["force"][2], 1e4, 1e-6);
+    close(&last_step(&found)["kinetic_energy"], 0.0, 0.0);
+    // Bars that overlap without a corner of one in the other, and friction per area.
+    let deep = [[-1.0, -0.1, -0.1], [1.0, 0.1, 0.1]];
+    let both = "[\"upper\", \"lower\"]";
+    let found = error(&case(deep, across, both, 1.0, 0.0));
+    assert!(found.message.contains("deep inside `lower`"), "{}", found.message);
+    let tresca = case(cube, base, both, 1.0, 0.0).replace("restitution = 0.0", "friction.tresca = { limit = 1 }");
+    let found = error(&tresca);
+    assert!(found.message.contains("does not grow with pressure"), "{}", found.message);
+}
+
 /// What cannot move is told at its place, with what would be valid.
 #[test]
 fn wrong_statements_are_refused() {

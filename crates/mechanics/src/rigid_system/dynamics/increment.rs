@@ -9,7 +9,8 @@ use crate::increment_error::IncrementError;
 use crate::points::Order;
 use crate::rigid_system::increment::SoFar;
 use crate::rigid_system::motion::{Loaded, Motion, Stepped, TOUCHES};
-use crate::rigid_system::touching::{Id, Touching, touching};
+use crate::rigid_system::polyhedra::free_share;
+use crate::rigid_system::touching::{Id, Touching, Wanted, touching};
 use crate::system::{AssemblyError, SystemState};
 use signorini_geometry::Vector;
 use std::cell::Cell;
@@ -25,6 +26,9 @@ const NOTHING: f64 = 1e-14;
 /// Halvings of an increment, and steps in one.
 const MOST_HALVINGS: i32 = 20;
 const MOST_STEPS: usize = 20_000;
+/// Gap, relative to the size of the largest free body, within which polyhedra are looked at for impacts: the time of one is found by
+/// secants from there on, and by halves before.
+const NEAR: f64 = 0.1;
 /// Tries to find the time of an impact.
 const MOST_TRIES: usize = 100;
 
@@ -129,7 +133,8 @@ impl<'a, 'b> InTime<'a, 'b> {
     /// The points that touch.
     fn closed(&self, bodies: &[BodyState]) -> BTreeSet<Id> {
         let still = vec![None; bodies.len()];
-        let wanted = |_: Id, gap: f64| gap <= self.touches();
+        let touches = self.touches();
+        let wanted = Wanted { by: &|_, gap| gap <= touches, reach: touches, named: &BTreeSet::new() };
         let at = self.motion.bodies_of(bodies);
         touching(&self.motion.contacts, at, &still, Order::First, &wanted).into_iter().map(|p| p.id).collect()
     }
@@ -252,7 +257,7 @@ impl<'a, 'b> InTime<'a, 'b> {
         let from = Start { bodies: &now.bodies, velocities: &now.velocities };
         let least = |bodies: &[BodyState], after: f64| -> Least {
             let found = Cell::new((f64::INFINITY, f64::INFINITY));
-            let wanted = |id: Id, gap: f64| {
+            let by = |id: Id, gap: f64| {
                 if !closed.contains(&id) {
                     // What leaves has no gap at first: its gap per time counts.
                     let scaled = match leaving.get(&id) {
@@ -267,6 +272,7 @@ impl<'a, 'b> InTime<'a, 'b> {
                 false
             };
             let still = vec![None; bodies.len()];
+            let wanted = Wanted { by: &by, reach: NEAR * self.motion.size, named: &BTreeSet::new() };
             touching(&self.motion.contacts, self.motion.bodies_of(bodies), &still, Order::First, &wanted);
             let (scaled, gap) = found.get();
             Least { scaled, gap }
@@ -275,7 +281,15 @@ impl<'a, 'b> InTime<'a, 'b> {
             let driven = Driven::new(self.motion.system, &now.bodies, [start, to]);
             self.motion.smooth(self.masses, &from, &driven, (closed, initial))
         };
-        let Some(found) = solve(end)? else { return Ok(None) };
+        let Some(mut found) = solve(end)? else { return Ok(None) };
+        // Polyhedra that come near each other do so bit by bit.
+        let between = [&now.bodies, &found.bodies].map(|states| self.motion.bodies_of(states));
+        let share = free_share(&self.motion.contacts, between);
+        let (whole, end) = (whole * share, start + whole * share);
+        if share < 1.0 {
+            let Some(shorter) = solve(end)? else { return Ok(None) };
+            found = shorter;
+        }
         if self.passes(now, &found)? {
             return Ok(None);
         }

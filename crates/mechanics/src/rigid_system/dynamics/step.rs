@@ -21,7 +21,7 @@ use crate::body::BodyState;
 use crate::points::Order;
 use crate::rigid_system::complementarity::Complementarity;
 use crate::rigid_system::motion::{Loaded, Motion, TOUCHES};
-use crate::rigid_system::touching::{Id, Touching, Twists, touching};
+use crate::rigid_system::touching::{Id, Touching, Twists, Wanted, touching};
 use crate::system::AssemblyError;
 use nalgebra::{DMatrix, DVector};
 use signorini_geometry::Vector;
@@ -81,7 +81,8 @@ impl<'a> Motion<'a> {
         if ids.is_empty() {
             return BTreeMap::new();
         }
-        let found = touching(&self.contacts, self.bodies_of(bodies), twists, Order::First, &|id, _| ids.contains(&id));
+        let wanted = Wanted { by: &|_, _| false, reach: -1.0, named: ids };
+        let found = touching(&self.contacts, self.bodies_of(bodies), twists, Order::First, &wanted);
         found.into_iter().map(|p| (p.id, p)).collect()
     }
 

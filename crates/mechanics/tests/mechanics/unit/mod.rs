@@ -2,6 +2,7 @@
 
 mod admissible;
 mod contact_law;
+mod polyhedra;
 mod rigid_dynamics;
 mod rigid_system;
 mod rotation;

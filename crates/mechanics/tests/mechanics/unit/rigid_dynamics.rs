@@ -14,20 +14,20 @@ use signorini_mechanics::system::{PlacedLoad, Support, System, SystemState, Time
 use signorini_mechanics::{Dynamics, IncrementResult};
 use std::sync::Arc;
 
-const FREE: Motion = Motion::Free { plane: false };
+pub const FREE: Motion = Motion::Free { plane: false };
 
 fn mass(mass: f64, inertia: [f64; 3], velocity: Vector<3>, angular_velocity: Vector<3>) -> Option<RigidMass> {
     let inertia = Matrix::<3>::from_diagonal(&Vector::<3>::from(inertia));
     Some(RigidMass { mass, inertia, velocity, angular_velocity })
 }
 
-fn system(bodies: Vec<RigidBody>) -> System {
+pub fn system(bodies: Vec<RigidBody>) -> System {
     let dynamics = Some(Dynamics { spectral_radius: 1.0, damping: [0.0; 2] });
     let bodies = bodies.into_iter().map(|b| Box::new(b) as _).collect();
     System { bodies, dynamics, ..System::default() }
 }
 
-fn touch(system: &mut System, [slave, master]: [usize; 2], mu: f64, restitution: f64) {
+pub fn touch(system: &mut System, [slave, master]: [usize; 2], mu: f64, restitution: f64) {
     let of = |k: usize| (Part::from(k), system.bodies[k].as_ref());
     let kept = Enforcement::AugmentedLagrangian;
     let mut contact = Contact::new("touch", of(slave), of(master), Sampling::Nodes, kept).unwrap();
@@ -42,7 +42,7 @@ fn force(system: &mut System, body: usize, force: Vector<3>) {
 }
 
 /// The states at the ends of equal steps.
-fn run(
+pub fn run(
     system: &mut System,
     to: f64,
     steps: usize,
@@ -60,7 +60,7 @@ fn run(
     state
 }
 
-fn centre(state: &SystemState, body: usize) -> Vector<3> {
+pub fn centre(state: &SystemState, body: usize) -> Vector<3> {
     Vector::<3>::from_column_slice(&state.bodies[body].configuration[..3])
 }
 

@@ -157,6 +157,14 @@ impl Planner<'_> {
         }
         contact.law.friction = self.interface(key)?;
         contact.restitution = self.restitution(key)?;
+        let is_polyhedron = |part: &Part| body(part).polyhedron(&body(part).start()).is_some();
+        let grows = contact.law.friction.as_ref().is_none_or(|law| law.per_pressure().is_some());
+        if let (Some(friction), false, true, true) =
+            (&key.friction, grows, is_polyhedron(&slave), is_polyhedron(&master))
+        {
+            let message = "friction that does not grow with pressure acts per area, and rigid bodies of flat faces touch in points";
+            return Err(problem.error(friction, message).help("friction.coulomb = { mu = 0.3 }"));
+        }
         // What of a body of small strains faces another part of it turns little within an increment.
         let keeps = contact.law.friction.is_none() || matches!(kind, Kind::Cells);
         if slave.body == master.body && body(&slave).is_linear() && keeps {

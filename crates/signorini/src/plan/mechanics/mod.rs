@@ -447,7 +447,8 @@ impl Planner<'_> {
         system.bodies.iter().zip(&mut start.bodies).for_each(|(body, state)| body.prescribe(0.0, state));
         for (k, contact) in system.contacts.iter().enumerate() {
             let sites = system.sites(k, &start).map_err(|e| problem.error(&problem.space, e.to_string()))?;
-            let deepest = sites.iter().filter_map(|s| Some((s.gap?, s.x))).min_by(|a, b| a.0.total_cmp(&b.0));
+            let points = sites.iter().filter_map(|s| Some((s.gap?, s.x))).chain(system.deepest_overlap(k, &start));
+            let deepest = points.min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((gap, x)) = deepest.filter(|(gap, _)| *gap < -OVERLAP * system.size()) else { continue };
             let [name, other] = contact.bodies().map(|b| system.bodies[b].name());
             let place = problem.contacts.get(contact.name()).map_or(self.key(&problem.space), |key| self.key(key));

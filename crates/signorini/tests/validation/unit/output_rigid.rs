@@ -1,6 +1,6 @@
 //! Of `output::rigid`.
 
-use signorini::output::rigid::{file, joined};
+use signorini::output::rigid::{in_plane, joined};
 use signorini::testing::region;
 use signorini_contact::GapJet;
 use signorini_geometry::Vector;
@@ -14,6 +14,6 @@ fn the_edge_of_a_disc_is_a_closed_line_in_its_file() {
     let mut met = vec![0; points.len()];
     cells.iter().flatten().for_each(|&k| met[k as usize] += 1);
     assert_eq!(met.iter().position(|m| *m != 2), None);
-    let text = String::from_utf8(file(&gap, [-corner, corner], false).unwrap()).unwrap();
+    let text = String::from_utf8(in_plane(&gap, [-corner, corner]).unwrap()).unwrap();
     assert!(text.contains("<Lines>") && text.contains(&format!("NumberOfPoints=\"{}\"", points.len())));
 }

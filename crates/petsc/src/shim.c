@@ -125,6 +125,32 @@ static PetscErrorCode direct(System *system) {
   return 0;
 }
 
+/* Where MUMPS runs out of the room it took, for pivots that it put off as in saddle points, it takes more: percent of its estimate. */
+static PetscErrorCode set_up(KSP solver) {
+  PC preconditioner;
+  PetscBool is_lu = PETSC_FALSE, is_mumps = PETSC_FALSE;
+  MatSolverType package = NULL;
+  PetscCall(KSPGetPC(solver, &preconditioner));
+  PetscCall(PetscObjectTypeCompare((PetscObject)preconditioner, PCLU, &is_lu));
+  if (is_lu) {
+    PetscCall(PCFactorGetMatSolverType(preconditioner, &package));
+    PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &is_mumps));
+  }
+  for (PetscInt more = 100;; more *= 4) {
+    Mat factor;
+    PetscInt info = 0;
+    if (is_mumps) {
+      PetscCall(PCFactorSetUpMatSolverType(preconditioner));
+      PetscCall(PCFactorGetMatrix(preconditioner, &factor));
+      PetscCall(MatMumpsSetIcntl(factor, 14, more));
+    }
+    PetscCall(KSPSetUp(solver));
+    if (is_mumps) PetscCall(MatMumpsGetInfog(factor, 1, &info));
+    if ((info != -8 && info != -9 && info != -20) || more > 5000) return 0;
+    PetscCall(PCReset(preconditioner));
+  }
+}
+
 static PetscErrorCode build(int rows, int all, const int *start, const int *columns, const double *values, double tolerance,
                             int most, System *system) {
   PetscCall(MatCreateMPIAIJWithArrays(PETSC_COMM_WORLD, rows, rows, all, all, start, columns, values, &system->matrix));
@@ -135,7 +161,7 @@ static PetscErrorCode build(int rows, int all, const int *start, const int *colu
   PetscCall(KSPSetTolerances(system->solver, tolerance, 1e-300, 1e10, most));
   PetscCall(direct(system));
   PetscCall(KSPSetFromOptions(system->solver));
-  PetscCall(KSPSetUp(system->solver));
+  PetscCall(set_up(system->solver));
   return 0;
 }
 

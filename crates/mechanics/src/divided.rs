@@ -3,13 +3,14 @@
 //! Each process integrates its own cells. Forces of bodies are summed over the processes; loads, supports and contacts are the same
 //! on all, and each process takes the rows of them that it has.
 
-use crate::body::{BodyError, Contribution};
+use crate::body::{Body, BodyError, Contribution};
+use crate::eliminated::multipliers;
 use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::partition::bisected;
-use crate::processes::{DistributedEquations, DistributedMatrix, Division, Processes};
-use crate::system::{Assembled, System};
+use crate::processes::{DistributedEquations, DistributedMatrix, Division, Preconditioner, Processes};
+use crate::system::{Assembled, System, SystemState};
 use std::sync::Arc;
 
 /// Why a system cannot be divided.
@@ -75,11 +76,7 @@ fn centre(unknowns: &[u32], places: &[[f64; 3]]) -> [f64; 3] {
 
 impl Division {
     /// Sums over all processes what a body adds on each of them, and its energy. An error of one process is one of all.
-    pub(crate) fn summed(
-        &self,
-        added: Result<f64, BodyError>,
-        out: &mut Contribution,
-    ) -> Result<f64, BodyError> {
+    pub(crate) fn summed(&self, added: Result<f64, BodyError>, out: &mut Contribution) -> Result<f64, BodyError> {
         let word = added.as_ref().err().map(ToString::to_string);
         if let Some(message) = self.processes.first_word(word) {
             return Err(BodyError::OfProcess { message });
@@ -108,11 +105,13 @@ impl Problem<'_> {
     pub(crate) fn divided_step(
         &mut self,
         division: &Division,
-        out: &Assembled,
+        (at, out): (&SystemState, &Assembled),
         (held, right): (&[bool], &[f64]),
     ) -> Result<Vec<f64>, IncrementError> {
         let mut matrix = division.matrix(out);
-        let equations = DistributedEquations { right, held, of_bodies: self.is_spin.len() };
+        let preconditioner = |diagonal: &[f64]| self.preconditioner(division, (at, out), held, diagonal);
+        let of_bodies = self.is_spin.len();
+        let equations = DistributedEquations { right, held, of_bodies, preconditioner: &preconditioner };
         let mut found = None;
         if !self.is_free {
             found = matrix.solve(&equations).ok();
@@ -135,5 +134,44 @@ impl Problem<'_> {
             most_iterations: most.max(found.iterations),
         };
         Ok(found.x)
+    }
+
+    /// What preconditions iterations of a step from a state.
+    fn preconditioner(
+        &self,
+        division: &Division,
+        (at, out): (&SystemState, &Assembled),
+        held: &[bool],
+        diagonal: &[f64],
+    ) -> Preconditioner {
+        let count = self.is_spin.len();
+        let rank = division.processes.rank() as u32;
+        let list = multipliers(out.tangent.list(), (count, held), &diagonal[..count]);
+        let mut touched = vec![false; count];
+        let mut springs = Vec::new();
+        for m in list.iter().filter(|m| m.spring > 0.0) {
+            for (i, a) in &m.force {
+                touched[*i as usize] = true;
+                if division.owner[*i as usize] == rank {
+                    springs.extend(m.force.iter().map(|(j, b)| (*i, *j, m.spring * a * b)));
+                }
+            }
+        }
+        let system = self.system;
+        let (first, _) = system.numbering();
+        let mut motions = vec![vec![0.0; count]; 6];
+        for ((body, state), first) in system.bodies.iter().zip(&at.bodies).zip(first) {
+            for (out, own) in motions.iter_mut().zip(body.rigid_modes(state)) {
+                out[first as usize..first as usize + own.len()].copy_from_slice(&own);
+            }
+        }
+        // Unknowns of a node have the same place.
+        let components = |body: &dyn Body| {
+            let places = body.places();
+            places.iter().take_while(|x| **x == places[0]).count()
+        };
+        let components = system.bodies.iter().filter(|b| b.unknowns() > 0).map(|b| components(b.as_ref())).min();
+        let multipliers = list.iter().map(|m| m.told()).collect();
+        Preconditioner { springs, multipliers, touched, motions, components: components.unwrap_or(1) }
     }
 }

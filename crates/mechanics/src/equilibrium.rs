@@ -314,7 +314,7 @@ impl Equations for Problem<'_> {
         }
         let system = self.system;
         if let Some(division) = &system.division {
-            return self.divided_step(division, &out, (&held, &right));
+            return self.divided_step(division, (at, &out), (&held, &right));
         }
         if self.stiffness == Stiffness::KeptByBodies {
             let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;

@@ -318,7 +318,8 @@ impl Problem<'_> {
         let size_of_all = assembled.residual.len();
         let largest = self.system.row_sizes(&assembled, stiffness).into_iter().fold(0.0f64, f64::max);
         let divided = self.system.division.as_ref().map(|division| division.matrix(&assembled));
-        let matrix = (divided.is_none() && stiffness == Stiffness::InTangent).then(|| assembled.tangent.matrix(assembled.residual.len()));
+        let matrix = (divided.is_none() && stiffness == Stiffness::InTangent)
+            .then(|| assembled.tangent.matrix(assembled.residual.len()));
         for (k, body) in self.system.bodies.iter().enumerate() {
             for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
                 let mut x = vec![0.0; size_of_all];

@@ -56,8 +56,8 @@ mod nitsche;
 mod outer;
 pub mod pair;
 pub mod part;
-pub mod passage;
 mod partition;
+pub mod passage;
 mod placed;
 pub mod points;
 mod prepare;
@@ -117,9 +117,9 @@ pub use system::{AssemblyError, PlacedLoad, Support, System, SystemState, TimedL
 #[doc(hidden)]
 pub mod testing {
     pub use crate::admissible::Admissible;
-    pub use crate::partition::bisected;
     use crate::body::BodyState;
     use crate::increment_error::IncrementError;
+    pub use crate::partition::bisected;
     use crate::points::Order;
     pub use crate::rotation::{between, of_spin, of_spin_change, spin, turn, unwrapped, whole_turns};
     use crate::system::{AssemblyError, System, SystemState};

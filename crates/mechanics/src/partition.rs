@@ -22,9 +22,7 @@ fn bisect(points: &[[f64; 3]], own: &mut [u32], (first, parts): (usize, usize), 
     };
     // Of sides that are equally long the first.
     let axis = (1..3).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best });
-    let before = |a: &u32, b: &u32| {
-        points[*a as usize][axis].total_cmp(&points[*b as usize][axis]).then(a.cmp(b))
-    };
+    let before = |a: &u32, b: &u32| points[*a as usize][axis].total_cmp(&points[*b as usize][axis]).then(a.cmp(b));
     let lower = parts / 2;
     let cut = own.len() * lower / parts;
     if cut > 0 && cut < own.len() {

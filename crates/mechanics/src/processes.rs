@@ -50,6 +50,34 @@ pub struct DistributedEquations<'a> {
     pub held: &'a [bool],
     /// Unknowns of bodies; those that follow are multipliers.
     pub of_bodies: usize,
+    /// What preconditions iterations, from the diagonal of the matrix.
+    pub preconditioner: &'a dyn Fn(&[f64]) -> Preconditioner,
+}
+
+/// What preconditions iterations: bodies that springs in place of multipliers hold together, as where the multipliers are
+/// eliminated on one process, and what their algebraic multigrid has to know.
+#[derive(Clone, Debug, Default)]
+pub struct Preconditioner {
+    /// What the springs add to rows of this process.
+    pub springs: Vec<(u32, u32, f64)>,
+    pub multipliers: Vec<SpringOfMultiplier>,
+    /// Unknowns of bodies that a spring acts on.
+    pub touched: Vec<bool>,
+    /// Motions of the bodies that stretch nothing: steps of the unknowns of bodies.
+    pub motions: Vec<Vec<f64>>,
+    /// Unknowns that stand side by side at a node.
+    pub components: usize,
+}
+
+/// The spring in place of a multiplier.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SpringOfMultiplier {
+    /// Its stiffness; zero of one whose equation is its own.
+    pub stiffness: f64,
+    /// The multiplier, against its sign, per residual of its equation.
+    pub pull: f64,
+    /// By what its equation counts as a force.
+    pub scale: f64,
 }
 
 /// A solution, and what it took.

@@ -56,6 +56,29 @@ unsafe extern "C" {
         most: c_int,
         out: *mut *mut Opaque,
     ) -> c_int;
+    fn sig_new_glued(
+        rows: c_int,
+        all: c_int,
+        start: *const c_int,
+        columns: *const c_int,
+        values: *const f64,
+        body_rows: c_int,
+        body_all: c_int,
+        glued_start: *const c_int,
+        glued_columns: *const c_int,
+        glued_values: *const f64,
+        pull: *const f64,
+        spring: *const f64,
+        touched: *const c_int,
+        touched_count: c_int,
+        motions: *const f64,
+        motion_count: c_int,
+        components: c_int,
+        tolerance: f64,
+        most: c_int,
+        out: *mut *mut Opaque,
+    ) -> c_int;
+    fn sig_option(name: *const c_char, text: *mut c_char, length: c_int) -> c_int;
     fn sig_free(system: *mut Opaque) -> c_int;
     fn sig_solve(
         system: *mut Opaque,
@@ -162,13 +185,7 @@ pub fn gather(own: &[f64], counts: &Counts) -> Vec<f64> {
     assert_eq!(own.len(), counts.counts[rank()] as usize);
     let mut out = vec![0.0; counts.all()];
     or_end(unsafe {
-        sig_gather(
-            own.as_ptr(),
-            own.len() as c_int,
-            out.as_mut_ptr(),
-            counts.counts.as_ptr(),
-            counts.starts.as_ptr(),
-        )
+        sig_gather(own.as_ptr(), own.len() as c_int, out.as_mut_ptr(), counts.counts.as_ptr(), counts.starts.as_ptr())
     });
     out
 }
@@ -209,6 +226,48 @@ pub fn unused_options() -> Vec<String> {
     text.lines().map(str::to_string).collect()
 }
 
+/// The value of an option; none where it is not given.
+pub fn option(name: &CStr) -> Option<String> {
+    let mut text: Vec<c_char> = vec![0; 256];
+    if unsafe { sig_option(name.as_ptr(), text.as_mut_ptr(), text.len() as c_int) } != 0 {
+        return None;
+    }
+    let text = unsafe { CStr::from_ptr(text.as_ptr()) }.to_string_lossy().into_owned();
+    Some(text).filter(|text| !text.is_empty())
+}
+
+/// Rows of this process, in compressed form, columns in the numbers of all.
+#[derive(Default)]
+pub struct Compressed {
+    pub start: Vec<c_int>,
+    pub columns: Vec<c_int>,
+    pub values: Vec<f64>,
+    /// Rows of all processes.
+    pub all: usize,
+}
+
+impl Compressed {
+    fn rows(&self) -> usize {
+        assert_eq!(self.columns.len(), self.values.len());
+        assert_eq!(self.start.last().copied(), Some(self.columns.len() as c_int));
+        self.start.len() - 1
+    }
+}
+
+/// Bodies with springs in place of multipliers, which precondition: rows of bodies come first on each process.
+#[derive(Default)]
+pub struct Glued {
+    pub matrix: Compressed,
+    /// By multiplier of this process: its part of the load per residual, and the stiffness of its spring.
+    pub pull: Vec<f64>,
+    pub spring: Vec<f64>,
+    /// Rows of `matrix` of this process that springs act on, in the numbers of all.
+    pub touched: Vec<c_int>,
+    /// Motions that stretch nothing, one after the other, in rows of this process.
+    pub motions: Vec<f64>,
+    pub components: usize,
+}
+
 /// A linear system of PETSc, with what solves it.
 pub struct LinearSystem {
     system: *mut Opaque,
@@ -216,24 +275,50 @@ pub struct LinearSystem {
 }
 
 impl LinearSystem {
-    /// From the rows of this process, columns in the numbers of all.
-    pub fn new(
-        all: usize,
-        start: &[c_int],
-        columns: &[c_int],
-        values: &[f64],
-        (tolerance, most): (f64, usize),
-    ) -> Result<Self, Code> {
-        let rows = start.len() - 1;
-        assert_eq!((columns.len(), values.len()), (start[rows] as usize, start[rows] as usize));
+    /// Factorised, if the options say nothing else.
+    pub fn direct(matrix: &Compressed, (tolerance, most): (f64, usize)) -> Result<Self, Code> {
+        let rows = matrix.rows();
         let mut system = std::ptr::null_mut();
         checked(unsafe {
             sig_new(
                 rows as c_int,
-                all as c_int,
-                start.as_ptr(),
-                columns.as_ptr(),
-                values.as_ptr(),
+                matrix.all as c_int,
+                matrix.start.as_ptr(),
+                matrix.columns.as_ptr(),
+                matrix.values.as_ptr(),
+                tolerance,
+                most as c_int,
+                &mut system,
+            )
+        })?;
+        Ok(LinearSystem { system, rows })
+    }
+
+    /// Solved by iterations.
+    pub fn iterative(matrix: &Compressed, glued: &Glued, (tolerance, most): (f64, usize)) -> Result<Self, Code> {
+        let (rows, of_bodies) = (matrix.rows(), glued.matrix.rows());
+        assert_eq!([glued.pull.len(), glued.spring.len()], [rows - of_bodies; 2]);
+        let motions = glued.motions.len() / of_bodies.max(1);
+        let mut system = std::ptr::null_mut();
+        checked(unsafe {
+            sig_new_glued(
+                rows as c_int,
+                matrix.all as c_int,
+                matrix.start.as_ptr(),
+                matrix.columns.as_ptr(),
+                matrix.values.as_ptr(),
+                of_bodies as c_int,
+                glued.matrix.all as c_int,
+                glued.matrix.start.as_ptr(),
+                glued.matrix.columns.as_ptr(),
+                glued.matrix.values.as_ptr(),
+                glued.pull.as_ptr(),
+                glued.spring.as_ptr(),
+                glued.touched.as_ptr(),
+                glued.touched.len() as c_int,
+                glued.motions.as_ptr(),
+                motions as c_int,
+                glued.components as c_int,
                 tolerance,
                 most as c_int,
                 &mut system,
@@ -248,14 +333,7 @@ impl LinearSystem {
         let mut found = vec![0.0; self.rows];
         let (mut iterations, mut reason) = (0, 0);
         checked(unsafe {
-            sig_solve(
-                self.system,
-                right.as_ptr(),
-                found.as_mut_ptr(),
-                self.rows as c_int,
-                &mut iterations,
-                &mut reason,
-            )
+            sig_solve(self.system, right.as_ptr(), found.as_mut_ptr(), self.rows as c_int, &mut iterations, &mut reason)
         })?;
         Ok((found, iterations as usize, reason))
     }

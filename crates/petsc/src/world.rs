@@ -1,7 +1,7 @@
 //! All processes that MPI started.
 
 use crate::matrix::PetscMatrix;
-use crate::shim::{self, Counts};
+use crate::shim::{self, Compressed, Counts, LinearSystem};
 use signorini_mechanics::processes::{DistributedMatrix, Processes};
 use std::sync::OnceLock;
 
@@ -20,9 +20,8 @@ impl World {
     /// # Errors
     /// In words, where they cannot be started.
     pub fn start() -> Result<Self, String> {
-        let started = WORLD
-            .get_or_init(|| shim::start().map(|()| World { rank: shim::rank(), count: shim::size() }))
-            .as_ref();
+        let started =
+            WORLD.get_or_init(|| shim::start().map(|()| World { rank: shim::rank(), count: shim::size() })).as_ref();
         started.copied().map_err(|code| format!("PETSc or MPI cannot be started (its error {code})"))
     }
 
@@ -46,7 +45,12 @@ impl World {
     /// # Errors
     /// In words, where PETSc cannot read them.
     pub fn options(self, text: &str) -> Result<(), String> {
-        shim::options(text).map_err(|code| format!("PETSc cannot read the options `{text}` (its error {code})"))
+        let refused = |code| format!("PETSc refuses the options `{text}` (its error {code})");
+        shim::options(text).map_err(refused)?;
+        // Types that do not exist are found as a system is solved: one of an unknown for each process.
+        let one = Compressed { start: vec![0, 1], columns: vec![self.rank as i32], values: vec![1.0], all: self.count };
+        LinearSystem::direct(&one, (f64::EPSILON, 1)).map_err(refused)?;
+        Ok(())
     }
 
     /// Options that nothing has asked for so far.

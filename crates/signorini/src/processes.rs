@@ -41,7 +41,9 @@ pub fn connect() -> Result<(), CaseError> {
 pub fn connect() -> Result<(), CaseError> {
     let message = match started() {
         1 => "this program was built without PETSc".to_string(),
-        n => format!("{n} processes were started together, but this program was built without MPI: each would do the same"),
+        n => format!(
+            "{n} processes were started together, but this program was built without MPI: each would do the same"
+        ),
     };
     Err(CaseError::new(message).help("build it with  --features petsc  (docs/cluster.md), or run one process"))
 }

@@ -106,8 +106,7 @@ fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Prog
     let writes = processes::rank() == 0;
     let silent = |model: &dyn Model| Record::new(model.head(), Folder::default());
     if begun == Begun::Resumed {
-        let record =
-            if writes { record::of_earlier_run(model.head(), folder) } else { silent(&*model) };
+        let record = if writes { record::of_earlier_run(model.head(), folder) } else { silent(&*model) };
         return go_on(&mut *model, record, folder, start, progress);
     }
     let record = if writes { record::begin(model.head(), folder).map_err(RunError::from) } else { Ok(silent(&*model)) };

@@ -60,7 +60,8 @@ mod with_petsc {
         String::from_utf8_lossy(&output.stderr).into_owned()
     }
 
-    /// Forces and pressures of the last state to 1e-10, with the same iterations of Newton's method; by factors and by iterations.
+    /// Forces and pressures of the last state to 1e-10, with the same iterations of Newton's method by factors, and at most one more by
+    /// iterations.
     #[test]
     fn processes_find_what_one_finds() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -71,10 +72,15 @@ mod with_petsc {
             {
                 let (output, found) = run(folder.path(), processes, case, more);
                 assert!(output.status.success(), "{case}: {}", error(&output));
-                let iterations = |s: &Value| -> Vec<Value> {
-                    s["steps"].as_array().expect("steps").iter().map(|s| s["iterations"].clone()).collect()
+                let iterations = |s: &Value| -> Vec<u64> {
+                    let steps = s["steps"].as_array().expect("steps").iter();
+                    steps.map(|s| s["iterations"].as_u64().expect("a number")).collect()
                 };
-                assert_eq!(iterations(&found), iterations(&one), "{case}");
+                // Where linear equations are solved to 1e-10 of their right-hand side a step may lack the last digits of Newton's.
+                let most = u64::from(!more.is_empty());
+                let (taken, alone) = (iterations(&found), iterations(&one));
+                let is_as_many = alone.iter().zip(&taken).all(|(a, b)| (*a..=a + most).contains(b));
+                assert!(is_as_many && alone.len() == taken.len(), "{case} {processes} {more:?}: {taken:?} {alone:?}");
                 let last = |s: &Value| s["steps"].as_array().and_then(|s| s.last().cloned()).expect("a step");
                 let (found, one) = (last(&found), last(&one));
                 assert_eq!(found["solver"], "petsc");

@@ -4,8 +4,7 @@ use signorini_mechanics::testing::bisected;
 
 #[test]
 fn parts_are_even_and_compact() {
-    let points: Vec<[f64; 3]> =
-        (0..24 * 12 * 6).map(|k| [k % 24, k / 24 % 12, k / 288].map(|i| f64::from(i))).collect();
+    let points: Vec<[f64; 3]> = (0..24 * 12 * 6).map(|k| [k % 24, k / 24 % 12, k / 288].map(f64::from)).collect();
     for parts in [1, 2, 3, 4, 7] {
         let found = bisected(&points, parts);
         let mut counts = vec![0usize; parts];

@@ -67,9 +67,9 @@ mod with_petsc {
         let folder = tempfile::tempdir().expect("a folder");
         for (case, contact) in [("hertz", "touch"), ("incline", "foot")] {
             let (_, one) = run(folder.path(), 0, case, &[]);
-            for (processes, more) in
-                [(2, &[][..]), (3, &[]), (2, &["--set", "method.linear={petsc=\"-pc_type gamg\"}"])]
-            {
+            let ways = [(2, &[][..]), (3, &[]), (2, &["--set", "method.linear={petsc=\"-pc_type gamg\"}"])];
+            // All ways of the smaller one.
+            for (processes, more) in ways.into_iter().take(if case == "incline" { 3 } else { 1 }) {
                 let (output, found) = run(folder.path(), processes, case, more);
                 assert!(output.status.success(), "{case}: {}", error(&output));
                 let iterations = |s: &Value| -> Vec<u64> {

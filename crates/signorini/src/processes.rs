@@ -4,7 +4,9 @@
 //! one is the first that something is wrong with.
 
 use crate::plan::mechanics::{Kind, MechanicsPlan};
-use crate::problem::{CaseError, LinearMethod};
+use crate::problem::CaseError;
+#[cfg(feature = "petsc")]
+use crate::problem::LinearMethod;
 #[cfg(feature = "petsc")]
 use signorini_mechanics::processes::Processes;
 #[cfg(feature = "petsc")]
@@ -164,10 +166,13 @@ pub fn refuse(what: &str) -> Result<(), CaseError> {
     }
 }
 
+#[cfg(feature = "petsc")]
 fn is_connected() -> bool {
-    #[cfg(feature = "petsc")]
-    return world().is_some();
-    #[cfg(not(feature = "petsc"))]
+    world().is_some()
+}
+
+#[cfg(not(feature = "petsc"))]
+fn is_connected() -> bool {
     false
 }
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'b8469919966e189c'
+SCHEMA = '5023d6f27b9a504b'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -25,6 +25,7 @@ CHOICES = {
     'Domain': {'disc': 'Disc', 'ellipse': 'Ellipse', 'rectangle': 'Rectangle', 'polygon': 'Polygon', 'implicit': 'Implicit', 'interval': 'Interval'},
     'Enforcement': {'multiplier': 'Multiplier', 'augmented_lagrangian': 'AugmentedLagrangian', 'nitsche': 'Nitsche', 'penalty': 'Penalty'},
     'Friction': {'coulomb': 'CoulombFriction', 'tresca': 'TrescaFriction', 'viscous': 'ViscousFriction', 'rate_and_state': 'RateAndStateFriction'},
+    'LinearMethod': {'petsc': 'str'},
     'Material': {'linear_elastic': 'LinearElastic', 'neo_hooke': 'NeoHooke', 'saint_venant_kirchhoff': 'SaintVenantKirchhoff', 'mooney_rivlin': 'MooneyRivlin', 'yeoh': 'Yeoh', 'ogden': 'Ogden', 'arruda_boyce': 'ArrudaBoyce', 'orthotropic': 'Orthotropic', 'elastic_plastic': 'ElasticPlastic'},
     'Mesh': {'grid': 'GridMesh', 'gmsh': 'DividedGmshMesh', 'arrays': 'MeshArrays'},
     'Method': {'inequality_level_set': 'LevelSetMethod', 'active_set': 'ActiveSetMethod', 'mortar': 'Mortar', 'gauss_point': 'GaussPoint', 'node': 'Node', 'curve': 'CurveMethod', 'cell_surface': 'CellSurface', 'discs': 'DiscMethod'},
@@ -2102,6 +2103,18 @@ class Penalty(Noun):
         self.penetration = penetration
 
 
+class Petsc(Noun):
+    """PETSc, with options as on its command line, such as "-ksp_type gmres -pc_type gamg"; "" for the methods of
+    this program. A run of several processes always uses it.
+    """
+
+    _key = 'petsc'
+    _types = {'value': ('petsc', 'str')}
+
+    def __init__(self, value: str) -> None:
+        self.value = value
+
+
 class Plane(Noun):
     """A half space bounded by a plane.
 
@@ -2624,6 +2637,23 @@ class SolidEdge(Noun):
         self.radius = radius
 
 
+class Solution(Noun):
+    """How the equations are solved.
+
+    linear: What solves the linear equations of Newton's method; chosen by the program if left out.
+    """
+
+    _key = None
+    _types = {'linear': ('linear', '<LinearMethod>')}
+
+    def __init__(
+        self,
+        *,
+        linear: Optional[Petsc | str | Mapping[str, Any] | str] = None,
+    ) -> None:
+        self.linear = linear
+
+
 class Sphere(Noun):
     """A sphere; a circle in the plane.
 
@@ -3093,6 +3123,7 @@ class ProblemKeys(Noun):
         expressions of t are possible. None if left out.
     limits: Limits of the computation.
     loads: Loads, by names of your own.
+    method: How the equations are solved.
     output: What is written to disk.
     paths: With `analysis = "wrapping"`: shortest paths, by names of your own.
     ropes: With `analysis = "euler_eytelwein"`: ropes on given curves, by names of your own.
@@ -3107,7 +3138,7 @@ class ProblemKeys(Noun):
     """
 
     _key = None
-    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'gravity': ('gravity', '[Value]'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
+    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'gravity': ('gravity', '[Value]'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'method': ('method', 'Solution'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
 
     def __init__(
         self,
@@ -3123,6 +3154,7 @@ class ProblemKeys(Noun):
         gravity: Optional[Sequence[Value] | Array] = None,
         limits: Optional[Limits | Mapping[str, Any]] = None,
         loads: Optional[Mapping[str, Load | Mapping[str, Any]]] = None,
+        method: Optional[Solution | Mapping[str, Any]] = None,
         output: Optional[Output | Mapping[str, Any]] = None,
         paths: Optional[Mapping[str, ShortestPath | Mapping[str, Any]]] = None,
         ropes: Optional[Mapping[str, RopeOnSurface | Mapping[str, Any]]] = None,
@@ -3146,6 +3178,7 @@ class ProblemKeys(Noun):
         self.gravity = gravity
         self.limits = limits
         self.loads = loads
+        self.method = method
         self.output = output
         self.paths = paths
         self.ropes = ropes
@@ -3159,4 +3192,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Petsc", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Solution", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

@@ -144,6 +144,9 @@ pub enum BodyError {
     Inverted { body: String, cell: usize },
     #[error("cell {cell} of `{body}`: {message}")]
     Material { body: String, cell: usize, message: String },
+    /// What happened on one of several processes.
+    #[error("{message}")]
+    OfProcess { message: String },
 }
 
 /// A place that a body does not have, or that cannot be used in this way.
@@ -297,6 +300,12 @@ pub trait Elimination {
     /// Where each unknown is, about, before the body deforms: for the order of elimination. None where that is not known.
     fn places(&self) -> Vec<[f64; 3]> {
         Vec::new()
+    }
+
+    /// From now on [`internal`](Body::internal) adds forces, derivative and energy of these cells only, in the order of
+    /// [`cliques`](Elimination::cliques): others are with other processes. Whether the body can do so.
+    fn keep_cells(&mut self, _keep: &[bool]) -> bool {
+        false
     }
 
     /// What iterations need in place of a factorisation: of linear bodies that have it.

@@ -56,7 +56,7 @@ impl System {
     /// where they are.
     pub(crate) fn dissected(&self) -> Option<Symbolic> {
         let (_, count) = self.numbering();
-        if count < MANY || self.solver != LinearSolver::Automatic {
+        if count < MANY || self.division.is_some() || self.solver != LinearSolver::Automatic {
             return None;
         }
         let places: Vec<[f64; 3]> = self.bodies.iter().flat_map(|body| body.places()).collect();
@@ -65,7 +65,7 @@ impl System {
 
     /// Where the stiffness of bodies goes in a state.
     pub(crate) fn stiffness(&self, state: &SystemState) -> Result<Stiffness, AssemblyError> {
-        Ok(if self.step.is_some() {
+        Ok(if self.step.is_some() || self.division.is_some() {
             Stiffness::InTangent
         } else if self.is_iterative(state)? {
             Stiffness::KeptByBodies

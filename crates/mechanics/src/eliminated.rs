@@ -13,6 +13,7 @@
 //! by what is not symmetric: gaps that are not closed, and friction. The method of generalised conjugate residuals removes that
 //! in a few iterations (as augmented Lagrangians do; Fortin & Glowinski 1983; Benzi, Golub & Liesen, *Acta Numerica* 14, 2005).
 
+use crate::processes::SpringOfMultiplier;
 use signorini_contact::compress;
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::general::{Entries, Matrix};
@@ -31,12 +32,32 @@ const REFUSED: f64 = 1e-9;
 
 /// A multiplier: its force on bodies, its equation, and what stands on the diagonal.
 #[derive(Default)]
-struct Multiplier {
-    force: Vec<(u32, f64)>,
+pub(crate) struct Multiplier {
+    pub force: Vec<(u32, f64)>,
     row: Vec<(u32, f64)>,
     diagonal: f64,
     /// Stiffness of its spring; zero of one whose equation is its own.
-    spring: f64,
+    pub spring: f64,
+}
+
+/// The multipliers that entries couple with the first `count` unknowns, those of bodies, with springs; `held` names unknowns whose
+/// step is known, and `diagonal` is the stiffness of each unknown of bodies.
+pub(crate) fn multipliers(
+    entries: impl Iterator<Item = (u32, u32, f64)>,
+    (count, held): (usize, &[bool]),
+    diagonal: &[f64],
+) -> Vec<Multiplier> {
+    let mut out: Vec<Multiplier> = (count..held.len()).map(|_| Multiplier::default()).collect();
+    for (i, j, v) in entries.filter(|(i, j, _)| !held[*i as usize] && !held[*j as usize]) {
+        match ((i as usize).checked_sub(count), (j as usize).checked_sub(count)) {
+            (None, Some(j)) => out[j].force.push((i, v)),
+            (Some(i), None) => out[i].row.push((j, v)),
+            (Some(k), Some(j)) if k == j => out[k].diagonal += v,
+            _ => {}
+        }
+    }
+    out.iter_mut().for_each(|m| m.choose_spring(diagonal));
+    out
 }
 
 /// The step of all unknowns, of which the first `count` are of bodies; `held` names unknowns whose step is known, and stands in
@@ -89,6 +110,23 @@ pub(crate) fn eliminated_step(
 }
 
 impl Multiplier {
+    /// By what its equation counts as the force of its spring.
+    fn scale(&self) -> f64 {
+        let force = self.force.iter().fold(0.0f64, |most, f| most.max(f.1.abs())).max(f64::MIN_POSITIVE);
+        if self.spring > 0.0 { self.spring * force } else { force / self.diagonal.abs() }
+    }
+
+    /// The spring for other processes to know; one without force or equation is left as it is.
+    pub(crate) fn told(&self) -> SpringOfMultiplier {
+        let pull = match self.diagonal {
+            _ if self.spring > 0.0 => self.spring,
+            0.0 => 0.0,
+            diagonal => -1.0 / diagonal,
+        };
+        let scale = Some(self.scale()).filter(|scale| scale.is_normal() && pull != 0.0).unwrap_or(1.0);
+        SpringOfMultiplier { stiffness: self.spring, pull, scale }
+    }
+
     /// Sums entries of the same unknown, and takes a spring where force and row are alike.
     fn choose_spring(&mut self, diagonal: &[f64]) {
         [&mut self.force, &mut self.row].into_iter().for_each(compress);
@@ -128,11 +166,8 @@ impl Saddle<'_> {
         let moved = self.product(&known);
         let left: Vec<f64> = (0..n).map(|k| if self.held[k] { 0.0 } else { right[k] - moved[k] }).collect();
         // Equations of multipliers count as the forces of their springs.
-        let scale = |m: &Multiplier| {
-            let force = m.force.iter().fold(0.0f64, |most, f| most.max(f.1.abs())).max(f64::MIN_POSITIVE);
-            if m.spring > 0.0 { m.spring * force } else { force / m.diagonal.abs() }
-        };
-        let scales: Vec<f64> = std::iter::repeat_n(1.0, self.count).chain(self.multipliers.iter().map(scale)).collect();
+        let of_multipliers = self.multipliers.iter().map(Multiplier::scale);
+        let scales: Vec<f64> = std::iter::repeat_n(1.0, self.count).chain(of_multipliers).collect();
         let scaled = |x: &[f64]| x.iter().zip(&scales).map(|(x, s)| x * s).collect::<Vec<f64>>();
         let unscaled = |x: &[f64]| x.iter().zip(&scales).map(|(x, s)| x / s).collect::<Vec<f64>>();
         let product = |y: &[f64]| Ok(Some(scaled(&self.product(&self.preconditioned(&unscaled(y))?))));

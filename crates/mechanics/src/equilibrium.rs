@@ -210,6 +210,11 @@ impl Problem<'_> {
     /// alone keeps them where they are and changes no solution. `sizes` are those of the rows. Linear bodies that are condensed
     /// have one where contact changes them.
     pub(crate) fn add_grain(&self, out: &mut Assembled, held: &[bool], sizes: &[f64]) {
+        self.grain(out, held, sizes).into_iter().for_each(|(k, grain)| out.tangent.add(k, k, grain));
+    }
+
+    /// Unknowns and the grain of each.
+    pub(crate) fn grain(&self, out: &Assembled, held: &[bool], sizes: &[f64]) -> Vec<(u32, f64)> {
         let count = self.is_spin.len();
         let size = self.system.size();
         let mut most = [0.0f64; 2];
@@ -228,11 +233,12 @@ impl Problem<'_> {
             let own = first[k] as usize..first[k] as usize + self.system.bodies[k].unknowns();
             changes[own].fill(true);
         }
-        for k in (0..count).filter(|k| !held[*k] && changes[*k]) {
+        let of = |k: usize| {
             let kind = usize::from(self.is_spin[k]);
             let scale = if most[kind] > 0.0 { most[kind] } else { most[0].max(f64::MIN_POSITIVE) * size * size };
-            out.tangent.add(k as u32, k as u32, GRAIN * scale);
-        }
+            (k as u32, GRAIN * scale)
+        };
+        (0..count).filter(|k| !held[*k] && changes[*k]).map(of).collect()
     }
 
     pub(crate) fn spring(&self, unknown: usize) -> f64 {
@@ -305,6 +311,10 @@ impl Equations for Problem<'_> {
             let (unknown, factor) = h.constraint.terms[0];
             held[unknown as usize] = true;
             right[unknown as usize] = -h.constraint.violation / factor;
+        }
+        let system = self.system;
+        if let Some(division) = &system.division {
+            return self.divided_step(division, (at, &out), (&held, &right));
         }
         if self.stiffness == Stiffness::KeptByBodies {
             let (step, iterations) = self.system.iterated_step(out, &held, &right, &mut self.inverses)?;

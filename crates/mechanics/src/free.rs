@@ -317,7 +317,9 @@ impl Problem<'_> {
         let held: Vec<usize> = assembled.single.iter().map(|h| h.constraint.terms[0].0 as usize).collect();
         let size_of_all = assembled.residual.len();
         let largest = self.system.row_sizes(&assembled, stiffness).into_iter().fold(0.0f64, f64::max);
-        let matrix = (stiffness == Stiffness::InTangent).then(|| assembled.tangent.matrix(assembled.residual.len()));
+        let divided = self.system.division.as_ref().map(|division| division.matrix(&assembled));
+        let matrix = (divided.is_none() && stiffness == Stiffness::InTangent)
+            .then(|| assembled.tangent.matrix(assembled.residual.len()));
         for (k, body) in self.system.bodies.iter().enumerate() {
             for (mode, motion) in body.rigid_modes(&at.bodies[k]).iter().enumerate() {
                 let mut x = vec![0.0; size_of_all];
@@ -329,9 +331,10 @@ impl Problem<'_> {
                 if size == 0.0 || held.iter().any(|h| x[*h] != 0.0) || assembled.coupled.iter().any(is_held) {
                     continue;
                 }
-                let moved = match &matrix {
-                    Some(matrix) => matrix.multiply(&x),
-                    None => match assemble() {
+                let moved = match (&divided, &matrix) {
+                    (Some(divided), _) => divided.multiply(&x),
+                    (None, Some(matrix)) => matrix.multiply(&x),
+                    (None, None) => match assemble() {
                         Ok(again) => self.system.product(again, &x),
                         Err(_) => return error,
                     },

@@ -38,7 +38,7 @@ impl System {
         let Some(many) = many else { return Ok(false) };
         let wanted = match self.solver {
             // Their preconditioners know no mass.
-            _ if self.dynamics.is_some() => false,
+            _ if self.dynamics.is_some() || self.division.is_some() => false,
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Automatic => moved().map(|b| b.unknowns()).sum::<usize>() > many,
@@ -100,6 +100,9 @@ impl System {
     /// The largest entry of each row of a tangent that was assembled.
     pub(crate) fn row_sizes(&self, out: &Assembled, stiffness: Stiffness) -> Vec<f64> {
         let n = out.residual.len();
+        if let Some(division) = &self.division {
+            return division.matrix(out).row_sizes();
+        }
         if stiffness != Stiffness::KeptByBodies {
             let mut sizes = out.tangent.matrix(n).row_sizes();
             if stiffness == Stiffness::Condensed {

@@ -14,6 +14,8 @@
 //! - [`system`]: bodies, supports, loads (`placed`) and contacts, assembled; `linear_constraint`: equations between single nodes.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
+//! - [`processes`]: several processes that solve one system together; `divided`: a system that is divided among them, by the
+//!   `partition` of its cells.
 //! - [`passage`]: how far steps may be followed so that nothing passes through; `inside`: what lies inside of a rigid body.
 //! - [`stability`]: whether a state is stable, on what may move (`admissible`); `branch`: from an unstable state to a stable one.
 //! - [`increment`]: equilibrium at one time, by Newton's method (`equilibrium`), other ways where that fails (`homotopy`,
@@ -32,6 +34,7 @@ pub mod contact;
 pub mod contact_law;
 pub mod curve;
 mod density;
+mod divided;
 pub mod dynamics;
 mod eliminated;
 mod energy_in_time;
@@ -54,10 +57,12 @@ mod nitsche;
 mod outer;
 pub mod pair;
 pub mod part;
+mod partition;
 pub mod passage;
 mod placed;
 pub mod points;
 mod prepare;
+pub mod processes;
 mod rest;
 mod resultants;
 pub mod rigid_body;
@@ -84,6 +89,7 @@ pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;
 pub use curve::Curve;
 pub use density::test_densely;
+pub use divided::DivisionError;
 pub use dynamics::{Dynamics, Inertial, Mass, Moved, Moving, SpinInertia};
 pub use enforcement::Enforcement;
 pub use increment::IncrementResult;
@@ -114,6 +120,7 @@ pub mod testing {
     pub use crate::admissible::Admissible;
     use crate::body::BodyState;
     use crate::increment_error::IncrementError;
+    pub use crate::partition::bisected;
     use crate::points::Order;
     pub use crate::rotation::{between, of_spin, of_spin_change, spin, turn, unwrapped, whole_turns};
     use crate::system::{AssemblyError, System, SystemState};

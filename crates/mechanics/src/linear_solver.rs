@@ -29,6 +29,13 @@ pub enum Solved {
         most_iterations: usize,
         coarse: Coarse,
     },
+    /// By several processes together.
+    Distributed {
+        processes: usize,
+        systems: usize,
+        /// Of one linear system; none where all were factorised.
+        most_iterations: Option<usize>,
+    },
 }
 
 /// How the coarse unknowns of a preconditioner are solved for.

@@ -92,7 +92,8 @@ impl System {
     /// Whether states may be unstable: bodies that deform, and not by small strains alone, in equations that are factorised.
     pub(crate) fn may_be_unstable(&self, at: &SystemState) -> Result<bool, IncrementError> {
         let moves = self.bodies.iter().filter(|b| b.unknowns() > 0);
-        Ok(moves.into_iter().any(|b| !b.is_rigid() && !b.is_linear()) && !self.is_iterative(at)?)
+        let factorised = self.division.is_none() && !self.is_iterative(at)?;
+        Ok(factorised && moves.into_iter().any(|b| !b.is_rigid() && !b.is_linear()))
     }
 
     /// Whether a state is stable, with a direction in which it is left as near as may be to where it came from; eigenvalues

@@ -13,6 +13,7 @@ pub use crate::linear_constraint::OfTime;
 use crate::linear_solver::{LinearSolver, Stiffness};
 pub use crate::placed::{PlacedLoad, Support, TimeField, TimeVectorField, TimedLoad};
 use crate::points::Order;
+use crate::processes::Division;
 use crate::time_step::TimeStep;
 use crate::unstable::Unstable;
 use signorini_geometry::Vector;
@@ -39,6 +40,8 @@ pub struct System {
     pub masses: Vec<Option<Mass>>,
     /// The increment in time that is being solved.
     pub step: Option<TimeStep>,
+    /// How several processes solve it together; none where one does.
+    pub division: Option<Division>,
 }
 
 /// A state of the system.
@@ -131,6 +134,8 @@ pub(crate) struct Assembled {
     /// Sum of the sizes of the terms of each equation.
     pub sizes: Vec<f64>,
     pub tangent: Entries,
+    /// What the cells of this process add to the tangent, where others have others; none where all is in `tangent`.
+    pub of_cells: Option<Entries>,
     /// Equations that hold one unknown, and those that couple several.
     pub single: Vec<Held>,
     pub coupled: Vec<Held>,
@@ -351,7 +356,8 @@ impl System {
         }
     }
 
-    /// The residual at a state and a time, without the reactions of supports, and its derivative.
+    /// The residual at a state and a time, without the reactions of supports, and its derivative; of a system that is divided
+    /// among processes without the derivative of its bodies.
     ///
     /// # Errors
     /// States and places that cannot be.
@@ -387,15 +393,20 @@ impl System {
         // What of the tangent of a body is the same in all states, and what is not.
         let is_condensed = |body: usize| stiffness == Stiffness::Condensed && self.is_condensed()[body];
         let constant = |body: usize| if is_condensed(body) { Order::First } else { order };
+        let mut of_cells = self.division.as_ref().map(|_| Entries::default());
         let mut energy = 0.0;
         for (k, (body, (state, &first))) in self.bodies.iter().zip(state.bodies.iter().zip(&first)).enumerate() {
             let mut out = Contribution::new(body.unknowns());
             let order = if stiffness == Stiffness::KeptByBodies { Order::First } else { constant(k) };
-            energy += body.internal(state, order, &mut out)?;
+            let added = body.internal(state, order, &mut out);
+            energy += match &self.division {
+                Some(division) => division.summed(added, &mut out)?,
+                None => added?,
+            };
             if let Some(step) = &self.step {
                 out.scale(step.share);
             }
-            add(&out, first, &mut residual, &mut sizes, &mut tangent);
+            add(&out, first, &mut residual, &mut sizes, of_cells.as_mut().unwrap_or(&mut tangent));
         }
         for load in &self.loads {
             let k = load.part.body;
@@ -441,7 +452,7 @@ impl System {
                 }
             }
         }
-        Ok(Assembled { residual, sizes, tangent, single, coupled, weakly_held, energy, lost })
+        Ok(Assembled { residual, sizes, tangent, of_cells, single, coupled, weakly_held, energy, lost })
     }
 }
 

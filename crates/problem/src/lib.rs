@@ -24,6 +24,7 @@ pub mod paths;
 pub mod problem_part;
 pub mod rigid;
 pub mod shape;
+mod solution;
 pub mod source;
 mod support;
 mod tree;
@@ -50,6 +51,7 @@ pub use problem_part::ProblemPart;
 pub use rigid::*;
 pub use shape::*;
 pub use signorini_expression::suggestion;
+pub use solution::{LinearMethod, Solution};
 pub use source::Source;
 pub use support::{CylindricalAxes, Support, SupportAxes, Tied};
 pub use value::{Components, Value};
@@ -99,6 +101,8 @@ pub struct Problem {
     pub steps: List<Step>,
     /// Treatment of unstable states of a system; `follow` if left out.
     pub stability: Option<UnstableStates>,
+    /// How the equations are solved.
+    pub method: Option<Solution>,
     /// What is written to disk.
     #[serde(default)]
     pub output: Output,
@@ -143,6 +147,7 @@ impl Problem {
             gravity: None,
             steps: List::default(),
             stability: None,
+            method: None,
             output: Output::default(),
             limits: Limits::default(),
             frames: None,

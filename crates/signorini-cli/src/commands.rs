@@ -12,6 +12,7 @@ use signorini::output::{Earlier, OutputError};
 use signorini::paths::{self, PathCase};
 use signorini::plan::plan;
 use signorini::problem::{CaseError, Limits, Problem};
+use signorini::processes;
 use signorini::queries::{Query, answer_file, answer_points};
 use signorini::report::{Summary, UnitNames, resultants, table};
 use signorini::run::{Begun, Ending, RunError, begun, preview, resume, run, sizes};
@@ -34,7 +35,7 @@ pub struct Wanted {
 }
 
 pub fn run_file(case: &Path, wanted: &Wanted, json: bool) -> u8 {
-    let (name, text) = match read(case) {
+    let (name, text) = match processes::all(read(case)) {
         Ok(read) => read,
         Err(error) => return report(&error, json),
     };
@@ -360,6 +361,9 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
     let Wanted { set, resume: resumed, limits, .. } = wanted;
     let resumed = *resumed;
     if scene::is_scene(text) {
+        if let Err(error) = processes::refuse("a scene") {
+            return report(&error, json);
+        }
         if resumed {
             let error =
                 CaseError::new("a scene cannot be resumed").help("start it from the beginning, without --resume");
@@ -367,13 +371,16 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
         }
         return execute_scene(name, text, folder, set, json);
     }
-    let mut problem = match signorini::case::read(name, text, set) {
+    let mut problem = match processes::all(signorini::case::read(name, text, set)) {
         Ok(problem) => problem,
         Err(error) => return report(&error, json),
     };
     problem.limits.max_time = limits.max_time.or(problem.limits.max_time);
     problem.limits.max_iterations = limits.max_iterations.or(problem.limits.max_iterations);
     if paths::is_of_paths(&problem) {
+        if let Err(error) = processes::refuse("paths") {
+            return report(&error, json);
+        }
         if resumed {
             let error =
                 CaseError::new("paths cannot be resumed").help("start them from the beginning, without --resume");
@@ -395,12 +402,17 @@ fn execute(name: &str, text: &str, folder: &Path, wanted: &Wanted, json: bool) -
         _ => {}
     }
     let replaced = if resumed { None } else { Earlier::in_folder(folder) };
-    let mut bar = Bar::new(json);
+    let mut bar = Bar::new(json || !processes::speaks());
     let result = if resumed { resume(&problem, folder, &mut bar) } else { run(&problem, folder, &mut bar) };
     bar.finish();
     match result {
         Err(RunError::Case(error)) => report(&error, json),
-        Err(RunError::Output(error)) => report(&output_error(&error), json),
+        Err(RunError::Output(error)) => {
+            let code = report(&output_error(&error), json);
+            // Others write nothing, and do not know.
+            processes::abort(code);
+            code
+        }
         Ok(outcome) => {
             if json {
                 say!("{}", json!(outcome.summary));

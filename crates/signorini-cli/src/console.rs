@@ -2,9 +2,11 @@
 //!
 //! A reader of standard output that goes away, as `head` does, ends the printing and nothing else: a run still writes
 //! its results, and the exit status is that of the command. Every other failure, such as a full disk, is told on
-//! standard error and in the exit status. What standard error does not take is lost: there is nowhere left to tell it.
+//! standard error and in the exit status. What standard error does not take is lost: there is nowhere left to tell it. Of
+//! several processes that run a case together one prints.
 
 use crate::commands::WRONG_INPUT;
+use signorini::processes::speaks;
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, Write, stderr, stdout};
 use std::sync::OnceLock;
@@ -27,14 +29,16 @@ static FAILURE: OnceLock<Error> = OnceLock::new();
 
 /// Prints on standard output, unless that failed before.
 pub fn print(text: Arguments<'_>) {
-    if !ended() {
+    if !ended() && speaks() {
         note(stdout().write_fmt(text));
     }
 }
 
 /// Prints on standard error.
 pub fn print_error(text: Arguments<'_>) {
-    let _ = stderr().write_fmt(text);
+    if speaks() {
+        let _ = stderr().write_fmt(text);
+    }
 }
 
 /// Whether standard output takes nothing more.

@@ -13,7 +13,8 @@ mod sweeps;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use console::tell;
-use signorini::problem::Limits;
+use signorini::problem::{CaseError, Limits};
+use signorini::processes;
 use signorini_report::draw::Wanted;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -342,7 +343,11 @@ fn main() -> ExitCode {
             return ExitCode::from(console::finish(commands::DONE));
         }
     };
-    let threads = arguments.threads.unwrap_or(0);
+    let threads = arguments.threads.unwrap_or(match processes::started() {
+        1 => 0,
+        // Processes share the cores of a machine.
+        _ => std::thread::available_parallelism().map_or(1, |n| (n.get() / processes::started_here()).max(1)),
+    });
     if arguments.threads == Some(0) || threads > 1024 {
         tell!("error: --threads {threads}: give a number from 1 to 1024");
         return ExitCode::from(1);
@@ -350,6 +355,11 @@ fn main() -> ExitCode {
     // A pool that cannot be built leaves the default one.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     let json = arguments.json;
+    if processes::started() > 1
+        && let Err(error) = together(&arguments.command)
+    {
+        return ExitCode::from(commands::report(&error, json));
+    }
     let result = std::panic::catch_unwind(|| match arguments.command {
         Command::Run { case, options, limits, resume } => {
             commands::run_file(&case, &options.wanted(&limits, resume), json)
@@ -387,10 +397,25 @@ fn main() -> ExitCode {
         Command::Gallery { action: Some(GalleryAction::Show { name }) } => commands::show_example(&name, json),
     });
     match result {
-        Ok(code) => ExitCode::from(console::finish(code)),
+        Ok(code) => {
+            let code = console::finish(code);
+            processes::end();
+            ExitCode::from(code)
+        }
         Err(_) => {
             tell!("signorini has an internal fault: please report the case and the message above.");
+            processes::abort(3);
             ExitCode::from(3)
         }
     }
+}
+
+/// Connects processes that were started together: they run one case.
+fn together(command: &Command) -> Result<(), CaseError> {
+    let runs = matches!(command, Command::Run { .. } | Command::Gallery { action: Some(GalleryAction::Run { .. }) });
+    if !runs {
+        let message = format!("{} processes were started together, which is for  signorini run", processes::started());
+        return Err(CaseError::new(message).help("start one process for other commands"));
+    }
+    processes::connect()
 }

@@ -10,6 +10,7 @@ mod npy;
 pub mod output;
 pub mod paths;
 pub mod plan;
+pub mod processes;
 pub mod queries;
 pub mod relief;
 pub mod report;

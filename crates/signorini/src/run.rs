@@ -16,6 +16,7 @@ pub(crate) mod strain;
 use crate::output::{Files, Folder};
 use crate::plan::{Plan, plan};
 use crate::problem::{CaseError, Problem};
+use crate::processes;
 use driver::{Model, drive, go_on};
 use outcome::not_resumed;
 pub use outcome::{Begun, Ending, Outcome, RunError};
@@ -36,7 +37,7 @@ pub fn run(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> Res
 /// # Errors
 /// A folder without a run, or with one of another case.
 pub fn begun(problem: &Problem, folder: &Path) -> Result<Begun, CaseError> {
-    checkpoint::begun(folder, &crate::case::text(problem)).map_err(not_resumed)
+    processes::all(checkpoint::begun(folder, &crate::case::text(problem)).map_err(not_resumed))
 }
 
 /// Goes on with a run that was interrupted or killed, from its last increment; to the same digits. Of a run that is done
@@ -101,17 +102,21 @@ fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Prog
     let start = Instant::now();
     // Everything that can be checked is checked before the folder is touched.
     let mut model = model(problem)?;
+    // The first of several processes writes for all.
+    let writes = processes::rank() == 0;
+    let silent = |model: &dyn Model| Record::new(model.head(), Folder::default());
     if begun == Begun::Resumed {
-        let record = record::of_earlier_run(model.head(), folder);
+        let record = if writes { record::of_earlier_run(model.head(), folder) } else { silent(&*model) };
         return go_on(&mut *model, record, folder, start, progress);
     }
-    let record = record::begin(model.head(), folder)?;
+    let record = if writes { record::begin(model.head(), folder).map_err(RunError::from) } else { Ok(silent(&*model)) };
+    let record = processes::all(record)?;
     drive(&mut *model, record, 0, start, progress)
 }
 
 /// The model of a problem at its beginning.
 fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
-    let planned: Box<dyn Planned> = match plan(problem)? {
+    let planned: Box<dyn Planned> = match processes::all(plan(problem))? {
         Plan::Line(p) => Box::new(p),
         Plan::Plane(p) => Box::new(p),
         Plan::Mechanics(p) => p,

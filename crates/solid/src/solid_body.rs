@@ -71,7 +71,9 @@ pub struct SolidBody<const D: usize> {
     edges: BTreeMap<String, EdgeCurve>,
     /// Quadrature tables by the kinds of map and basis of a cell.
     tables: HashMap<(usize, usize), Table>,
-    /// Unknowns and stiffness of each cell, of linear laws.
+    /// The cells whose forces it adds: all, but where other processes have the others.
+    kept: Vec<usize>,
+    /// Unknowns and stiffness of each of them, of linear laws.
     stiffness: Vec<(Vec<u32>, Vec<f64>)>,
     /// Coefficients of the reference position.
     position: Vec<Point<D>>,
@@ -142,12 +144,14 @@ impl<const D: usize> SolidBody<D> {
             faces,
             edges: BTreeMap::new(),
             tables,
+            kept: Vec::new(),
             stiffness: Vec::new(),
             position,
             size,
             history: History::default(),
             density: None,
         };
+        out.kept = (0..out.mesh().cell_count()).collect();
         let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
         out.history = History::new(out.law(), points);
         if out.law().is_linear() {
@@ -414,6 +418,14 @@ impl<const D: usize> Elimination for SolidBody<D> {
 
     fn is_linear(&self) -> bool {
         self.law().is_linear()
+    }
+
+    fn keep_cells(&mut self, keep: &[bool]) -> bool {
+        let mut kept = self.kept.iter().map(|cell| keep[*cell]);
+        self.stiffness.retain(|_| kept.next().unwrap_or_default());
+        self.stiffness.shrink_to_fit();
+        self.kept.retain(|cell| keep[*cell]);
+        true
     }
 }
 

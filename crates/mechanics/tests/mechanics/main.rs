@@ -2,6 +2,7 @@
 
 mod common;
 mod free;
+mod partition;
 mod patch;
 mod tangents;
 mod unit;

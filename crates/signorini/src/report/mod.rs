@@ -135,7 +135,7 @@ pub struct StepReport {
     /// Linear solver. `direct`: factorisation. `condensed`: linear bodies are factorised once, and a dense system
     /// contains what contact changes. `direct with krylov`: the multipliers of large contact zones are eliminated
     /// before a Cholesky factorisation, which preconditions a Krylov method. `multigrid`: multigrid. `schwarz`:
-    /// iterative with a Schwarz preconditioner.
+    /// iterative with a Schwarz preconditioner. `petsc`: PETSc, by one or several processes.
     pub solver: String,
     /// Largest number of iterations of an iterative solver for one linear system.
     pub linear_iterations: Option<usize>,

@@ -9,6 +9,7 @@ use crate::fields::ShownState;
 use crate::output::{Folder, OutputError};
 use crate::plan::Head;
 use crate::problem::{CaseError, Limits};
+use crate::processes;
 use crate::report::{ForceBounds, PathReports, Reason, SCHEMA, StepReport, Summary, history};
 use serde_json::{Value, json};
 use signorini_audit::{Check, Finding, Verdict, worst};
@@ -162,7 +163,7 @@ impl Progress for Logged<'_> {
         self.inner.iteration(i);
     }
     fn interrupted(&self) -> bool {
-        self.inner.interrupted() || self.budget.is_spent()
+        processes::agreed(self.inner.interrupted() || self.budget.is_spent())
     }
 }
 
@@ -182,7 +183,7 @@ pub fn drive(
     let budget = Budget::new(&model.head().problem.limits, start);
     // What ends a run that nobody interrupted is its limit.
     let named = |reason: Reason, by_user: bool| match reason {
-        Reason::Interrupted if !by_user && budget.is_spent() => Reason::LimitReached,
+        Reason::Interrupted if processes::agreed(!by_user && budget.is_spent()) => Reason::LimitReached,
         other => other,
     };
     if first == 0 && count > 0 && !checked_start(model, &mut record) {
@@ -236,6 +237,7 @@ pub fn drive(
             checkpoint::write(&record, index + 1, state)?;
         }
     }
+    record.warnings.extend(processes::remark().map(|told| told.as_str().into()));
     let summary = finish(&record, model, reason, start)?;
     let states = std::mem::take(&mut record.states);
     let ending = Ending::of(reason);
@@ -292,7 +294,7 @@ pub fn go_on(
     start: Instant,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RunError> {
-    let Checkpoint { next, state, record } = checkpoint::read(path, record).map_err(not_resumed)?;
+    let Checkpoint { next, state, record } = processes::all(checkpoint::read(path, record).map_err(not_resumed))?;
     if next >= model.increments() {
         return Err(not_resumed(checkpoint::damaged(path)).into());
     }

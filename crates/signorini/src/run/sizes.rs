@@ -9,6 +9,7 @@ use crate::output::{pictures, system_pictures};
 use crate::plan::mechanics::{MechanicsPlan, odd_length};
 use crate::plan::{MembranePlan, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};
 use crate::problem::CaseError;
+use crate::processes;
 use crate::report::{Warning, WarningKind};
 use crate::snapshot::{DisplayMesh, Snapshot};
 use serde_json::{Value, json};
@@ -148,6 +149,7 @@ impl<const D: usize> Planned for MembranePlan<D> {
     }
 
     fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+        processes::refuse("a membrane")?;
         Ok(Box::new(MembraneModel::new(*self)?))
     }
 }
@@ -161,7 +163,8 @@ impl Planned for MechanicsPlan {
         Ok(Some(system_pictures::preview(self)?))
     }
 
-    fn model(self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+    fn model(mut self: Box<Self>) -> Result<Box<dyn Model>, CaseError> {
+        processes::divide(&mut self)?;
         Ok(Box::new(MechanicsModel::new(*self)))
     }
 }

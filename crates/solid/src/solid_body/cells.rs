@@ -54,12 +54,11 @@ impl Gradients {
 impl<const D: usize> SolidBody<D> {
     pub(super) fn integrated(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let of = |cell: usize| self.cell(cell, state, order).map_err(|e| self.refused(cell, e));
-        let cells = (0..self.body().mesh.cell_count()).into_par_iter();
-        let found: Vec<Result<CellForces, BodyError>> = cells.map(of).collect();
+        let found: Vec<Result<CellForces, BodyError>> = self.kept.par_iter().map(|cell| of(*cell)).collect();
         let mut energy = 0.0;
-        for (cell, found) in found.into_iter().enumerate() {
+        for (cell, found) in self.kept.iter().zip(found) {
             let found = found?;
-            let (unknowns, signs) = self.unknowns_of(cell);
+            let (unknowns, signs) = self.unknowns_of(*cell);
             energy += found.energy;
             for (a, k) in unknowns.iter().enumerate() {
                 out.forces[*k as usize] += signs[a] * found.forces[a];

@@ -31,6 +31,7 @@ fn solver(solved: Solved) -> (&'static str, Option<usize>) {
         Solved::Direct => (SOLVER, None),
         Solved::Condensed => ("condensed", None),
         Solved::Eliminated => ("direct with krylov", None),
+        Solved::Distributed { most_iterations, .. } => ("petsc", most_iterations),
         Solved::Iterative { most_iterations, coarse, .. } => {
             let word = match coarse {
                 Coarse::Factorised => "schwarz",

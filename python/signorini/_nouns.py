@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '5023d6f27b9a504b'
+SCHEMA = 'ae98c37135c5a3cb'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -791,19 +791,24 @@ class Dynamics(Noun):
     damping: Damping by mass and stiffness; none if left out.
     spectral_radius: Spectral radius at high frequencies of the generalised-α method, from 0 to 1; 1 if left out:
         nothing is damped.
+    tolerance: Error of the displacements that an increment may add, per time, relative to the largest velocity so
+        far, both in the norm of the mass. Increments are solved in parts that keep to it. Left out: each
+        increment is one part.
     """
 
     _key = None
-    _types = {'damping': ('damping', 'RayleighDamping'), 'spectral_radius': ('spectral_radius', 'float')}
+    _types = {'damping': ('damping', 'RayleighDamping'), 'spectral_radius': ('spectral_radius', 'float'), 'tolerance': ('tolerance', 'float')}
 
     def __init__(
         self,
         *,
         damping: Optional[RayleighDamping | Mapping[str, Any]] = None,
         spectral_radius: Optional[float] = None,
+        tolerance: Optional[float] = None,
     ) -> None:
         self.damping = damping
         self.spectral_radius = spectral_radius
+        self.tolerance = tolerance
 
 
 class ElasticPlastic(Noun):
@@ -2700,7 +2705,8 @@ class Step(Noun):
     to: Time at the end of the step.
     control: The path parameter of the step; the time if left out.
     dynamics: Motion with inertia; equilibrium at each time if left out.
-    events: Time tolerance to which changes of topology and jumps are located; not located if left out.
+    events: Time tolerance to which events are located: changes of topology and jumps of membranes; of other
+        bodies when contacts touch, part, stick and slip. Not located if left out.
     increments: Number of increments; 1 if left out.
     """
 

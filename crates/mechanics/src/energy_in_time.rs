@@ -107,25 +107,25 @@ impl Solved<'_> {
         work
     }
 
-    /// Gives back to the velocities at the end the energy that contact took or gave. What changes is the impulse of contact between
-    /// the bodies, so momenta are conserved.
-    pub fn restore(&self, state: &mut SystemState) -> Result<(), IncrementError> {
+    /// Gives back to the velocities at the end the energy that contact took or gave, and returns what could not be. What changes is
+    /// the impulse of contact between the bodies, so momenta are conserved.
+    pub fn restore(&self, state: &mut SystemState) -> Result<f64, IncrementError> {
         let work = self.work_of_contact();
         let kinetic = |state: &SystemState, v: &[f64], w: &[f64]| -> f64 {
             self.system.momenta(state, v).iter().zip(w).map(|(p, w)| p * w).sum()
         };
         if work.abs() <= f64::EPSILON * kinetic(state, &state.velocities, &state.velocities) {
-            return Ok(());
+            return Ok(0.0);
         }
-        let Some(along) = self.velocities_by_contact(state)? else { return Ok(()) };
+        let Some(along) = self.velocities_by_contact(state)? else { return Ok(work) };
         let (a, b) = (kinetic(state, &along, &along), kinetic(state, &state.velocities, &along));
         if a <= 0.0 {
-            return Ok(());
+            return Ok(work);
         }
-        // What cannot be given back stays.
-        let share = share(a, b, work).unwrap_or(-b / a);
+        let whole = share(a, b, work);
+        let share = whole.unwrap_or(-b / a);
         state.velocities.iter_mut().zip(&along).for_each(|(v, w)| *v += share * w);
-        Ok(())
+        Ok(if whole.is_some() { 0.0 } else { work - 0.5 * b * b / a })
     }
 
     /// The velocities by an impulse like that of contact in the increment, up to a factor; none where they are not determined.

@@ -52,7 +52,7 @@ impl System {
         let solved = Solved { system: self, step, start, before, after: &result.sites };
         let damped = solved.damped(&state)?;
         let dissipated = solved.rubbed();
-        solved.restore(&mut state)?;
+        let by_contact = solved.restore(&mut state)?;
         if step.conserves() {
             solved.conserve(&mut state, &unbalanced)?;
         }
@@ -62,7 +62,7 @@ impl System {
         result.support_forces = self.support_forces(&at, &state);
         let (before, after, inertia) = (self.moving(start), self.moving(&state), self.inertia(&state));
         let error = self.error_in_time(step, &state);
-        result.moved = Some(Moved { before, after, inertia, damped, error });
+        result.moved = Some(Moved { before, after, inertia, damped, error, by_contact });
         Ok((state, result))
     }
 

@@ -216,6 +216,10 @@ pub(crate) fn divide(plan: &mut MechanicsPlan) -> Result<(), CaseError> {
         }
         let divided = plan.system.divide(std::sync::Arc::new(world));
         divided.map_err(|error| at(CaseError::new(error.to_string())))?;
+        if plan.system.bodies.iter().any(|body| !body.is_rigid() && !body.is_linear()) {
+            let message = "states at finite strain are not tested for stability where PETSc solves";
+            plan.head.warnings.push(message.into());
+        }
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ const GROWTH: f64 = 1.5;
 /// Part of the size that the tolerance would allow, so that few parts have to be solved again; least and largest change of the size.
 const SAFE: f64 = 0.9;
 const CHANGE: [f64; 2] = [0.2, 2.0];
-/// Part of the time that events are located to at best.
+/// Part of the time that events are located to at best, and of the kinetic energy that is none.
 const ROUNDING: f64 = 1e-12;
 
 /// Iterations of Newton's method for one increment, with all its parts and all ways to its states, after which it is given up:
@@ -120,7 +120,7 @@ impl MechanicsModel {
     ) -> Result<Result<IncrementResult, Failure>, CaseError> {
         let tolerance = self.plan.motion.tolerance.get(index).copied().flatten();
         let within = self.plan.events.get(index).copied().flatten().map(|within| within.max(ROUNDING * time));
-        let may_be_rejected = tolerance.is_some() || within.is_some();
+        let may_be_rejected = within.is_some() || self.plan.system.dynamics.is_some();
         if self.control.conditions.is_empty() {
             self.control.conditions = vec![Condition::Apart; self.plan.system.contacts.len()];
         }
@@ -167,6 +167,11 @@ impl MechanicsModel {
                     if error > 1.0 && part > SMALLEST_INCREMENT * whole {
                         self.plan.system.put_back(&kept);
                         size = self.control.size.unwrap_or(whole).max(SMALLEST_INCREMENT * whole);
+                        continue;
+                    }
+                    if result.moved.as_ref().is_some_and(gains_by_contact) && part > SMALLEST_INCREMENT * whole {
+                        self.plan.system.put_back(&kept);
+                        size = part * CUT;
                         continue;
                     }
                     let conditions = events::conditions(&self.plan.system, &result.sites);
@@ -233,6 +238,12 @@ impl MechanicsModel {
             })
             .collect()
     }
+}
+
+/// Whether contact gave energy in a part of an increment, as it closed or opened, beyond rounding.
+fn gains_by_contact(moved: &Moved) -> bool {
+    let kinetic: f64 = moved.before.iter().chain(&moved.after).map(|m| m.kinetic_energy).sum();
+    moved.by_contact.abs() > ROUNDING * kinetic
 }
 
 /// What is said of a tolerance that the smallest parts do not keep to.

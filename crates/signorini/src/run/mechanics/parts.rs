@@ -149,7 +149,7 @@ impl MechanicsModel {
                 is_given_up = total.residuals.len() + seen.len() - spent >= most;
                 !is_given_up && !progress.interrupted()
             };
-            let kept = may_be_rejected.then(|| self.plan.system.histories()).unwrap_or_default();
+            let kept = if may_be_rejected { self.plan.system.histories() } else { Vec::new() };
             let found = self.plan.system.solve(&self.state, target, &mut report);
             if let Some(error) = self.plan.wrong.take(&self.plan.head.problem) {
                 return Err(error);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the command with PETSc and MPI, and tests it with several processes. Where Debian's packages are not there they are
-# installed, if apt can. Where they cannot be had it says so and ends well: nothing else needs them.
+# installed, if apt can. Where they cannot be had it says so and ends well: nothing else needs them. With `--all` the command, too,
+# is built and run by several processes, which takes several minutes more.
 set -eu
 cd "$(dirname "$0")/.."
 packages="libpetsc-real-dev libopenmpi-dev openmpi-bin pkg-config"
@@ -26,4 +27,6 @@ if ! has_petsc; then
     has_petsc || missing "pkg-config finds no PETSc after its installation"
 fi
 cargo test --locked -p signorini-petsc --features petsc
-cargo test --locked -p signorini-cli --features petsc --test command processes
+if [ "${1:-}" = --all ]; then
+    cargo test --locked -p signorini-cli --features petsc --test command processes
+fi

@@ -1,6 +1,7 @@
 //! The pieces that a mesh falls into.
 
 use crate::mesh::Mesh;
+use signorini_geometry::sets::root;
 
 impl<const D: usize> Mesh<D> {
     /// The number of the piece that each cell belongs to: cells of one piece hang together by shared vertices. Pieces are
@@ -30,15 +31,6 @@ impl<const D: usize> Mesh<D> {
             })
             .collect()
     }
-}
-
-/// The lowest vertex known to hang together with this one; the way there is halved.
-fn root(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        parent[v as usize] = parent[parent[v as usize] as usize];
-        v = parent[v as usize];
-    }
-    v
 }
 
 #[cfg(test)]

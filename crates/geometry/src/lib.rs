@@ -48,6 +48,7 @@ pub mod rigid;
 pub mod rigid_shape;
 pub mod rule;
 mod scale;
+pub mod sets;
 pub mod shape;
 pub mod similarity;
 pub mod spline;

@@ -5,9 +5,9 @@
 //! end: the moment by velocities of a rigid motion, the work by a factor of the velocities relative to it. This is a projection on
 //! what is conserved (Hairer, Lubich and Wanner 2006, §IV.4); the method stays of order two.
 
-use crate::body::{Body, Contribution};
+use crate::body::Body;
 use crate::energy_in_time::{Solved, share};
-use crate::points::Order;
+use crate::resultants::dot;
 use crate::system::{AssemblyError, SystemState};
 use nalgebra::{Matrix6, Vector6};
 
@@ -30,17 +30,13 @@ struct Parts {
     relative: Vec<f64>,
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 impl Solved<'_> {
     /// Takes out of the velocities at the end what the internal forces of elastic bodies should not have done. `unbalanced` are the
     /// mean forces that Newton's method left.
     pub fn conserve(&self, state: &mut SystemState, unbalanced: &[f64]) -> Result<(), AssemblyError> {
         let system = self.system;
         let (first, _) = system.numbering();
-        let held = system.held_unknowns(state)?;
+        let held = system.held_unknowns(state, state.time)?;
         let motion = self.step.motion(system, state);
         state.owed.resize(system.bodies.len(), 0.0);
         for (k, body) in system.bodies.iter().enumerate() {
@@ -79,13 +75,9 @@ impl Solved<'_> {
         state: &SystemState,
     ) -> Result<Errors, AssemblyError> {
         let body = self.system.bodies[k].as_ref();
-        let mut out = [Contribution::new(body.unknowns()), Contribution::new(body.unknowns())];
-        let mut energies = [0.0; 2];
-        for (end, at) in [self.start, state].into_iter().enumerate() {
-            energies[end] = body.internal(&at.bodies[k], Order::First, &mut out[end])?;
-        }
+        let [(energy, first), (energy_after, last)] = self.internal(k, state)?;
         let forces = |by_change: f64| -> Vec<f64> {
-            let ends = out[0].forces.iter().zip(&out[1].forces);
+            let ends = first.iter().zip(&last);
             ends.zip(unbalanced).map(|((a, b), r)| 0.5 * (a + b) + by_change * (b - a) - r).collect()
         };
         let size = self.step.size;
@@ -93,7 +85,7 @@ impl Solved<'_> {
         let modes = [self.start, state].map(|at| body.rigid_modes(&at.bodies[k]));
         let along = |mode: usize| 0.5 * (dot(&damped, &modes[0][mode]) + dot(&damped, &modes[1][mode]));
         Ok(Errors {
-            work: energies[1] - energies[0] - dot(&forces(0.0), motion),
+            work: energy_after - energy - dot(&forces(0.0), motion),
             impulses: Vector6::from_fn(|mode, _| -size * along(mode)),
         })
     }

@@ -4,6 +4,7 @@ use crate::body::Contribution;
 use crate::increment_error::IncrementError;
 use crate::interaction::Assembler;
 use crate::points::Order;
+use crate::resultants::dot;
 use crate::site_result::SiteResult;
 use crate::system::{AssemblyError, System, SystemState, add};
 use crate::time_step::{TimeStep, Weights};
@@ -27,6 +28,17 @@ pub(crate) fn share(a: f64, b: f64, work: f64) -> Option<f64> {
 }
 
 impl Solved<'_> {
+    /// The stored energy and the internal forces of a body at the start and in the state at the end.
+    pub fn internal(&self, k: usize, state: &SystemState) -> Result<[(f64, Vec<f64>); 2], AssemblyError> {
+        let body = &self.system.bodies[k];
+        let at = |state: &SystemState| {
+            let mut out = Contribution::new(body.unknowns());
+            let energy = body.internal(&state.bodies[k], Order::First, &mut out)?;
+            Ok::<_, AssemblyError>((energy, out.forces))
+        };
+        Ok([at(self.start)?, at(state)?])
+    }
+
     /// The mean of a value by the weights of the forces.
     fn mean(&self, of: impl Fn(&SiteResult) -> f64, (before, after): (&SiteResult, &SiteResult)) -> f64 {
         let alpha_f = self.step.weights.alpha_f;
@@ -54,15 +66,11 @@ impl Solved<'_> {
         let (system, step, start) = (self.system, self.step, self.start);
         let Weights { alpha_m, alpha_f, .. } = step.weights;
         let u = &step.motion(system, state);
-        let product = |v: &[f64], w: &[f64]| -> f64 {
-            let mut momenta = vec![0.0; v.len()];
-            system.add_momenta(v, 1.0, &mut momenta);
-            momenta.iter().zip(w).map(|(p, w)| p * w).sum()
-        };
-        let kinetic = |v: &[f64]| 0.5 * product(v, v);
+        let kinetic = |v: &[f64]| 0.5 * system.product_by_mass(v, v);
         let ends = step.accelerations.iter().zip(&state.accelerations);
         let weighted: Vec<f64> = ends.map(|(a, b)| alpha_m * a + (1.0 - alpha_m) * b).collect();
-        let mut damped = product(&weighted, u) - (kinetic(&state.velocities) - kinetic(&step.velocities));
+        let mut damped =
+            system.product_by_mass(&weighted, u) - (kinetic(&state.velocities) - kinetic(&step.velocities));
         let uneven = 0.5 - alpha_f;
         if uneven != 0.0 {
             let change = state.forces.iter().zip(&start.forces).map(|(b, a)| b - a);
@@ -75,16 +83,13 @@ impl Solved<'_> {
             }
         }
         let [by_mass, by_stiffness] = step.damping;
-        damped += by_mass / step.size * product(u, u);
+        damped += by_mass / step.size * system.product_by_mass(u, u);
         if by_stiffness > 0.0 {
             let (first, _) = system.numbering();
             for (k, body) in system.bodies.iter().enumerate() {
-                let mut out = [Contribution::new(body.unknowns()), Contribution::new(body.unknowns())];
-                for (out, at) in out.iter_mut().zip([start, state]) {
-                    body.internal(&at.bodies[k], Order::First, out).map_err(AssemblyError::from)?;
-                }
+                let [(_, before), (_, after)] = self.internal(k, state)?;
                 let own = &u[first[k] as usize..first[k] as usize + body.unknowns()];
-                let change = out[1].forces.iter().zip(&out[0].forces).map(|(b, a)| b - a);
+                let change = after.iter().zip(&before).map(|(b, a)| b - a);
                 damped += by_stiffness / step.size * change.zip(own).map(|(f, u)| f * u).sum::<f64>();
             }
         }
@@ -111,9 +116,7 @@ impl Solved<'_> {
     /// the impulse of contact between the bodies, so momenta are conserved.
     pub fn restore(&self, state: &mut SystemState) -> Result<f64, IncrementError> {
         let work = self.work_of_contact();
-        let kinetic = |state: &SystemState, v: &[f64], w: &[f64]| -> f64 {
-            self.system.momenta(state, v).iter().zip(w).map(|(p, w)| p * w).sum()
-        };
+        let kinetic = |state: &SystemState, v: &[f64], w: &[f64]| -> f64 { dot(&self.system.momenta(state, v), w) };
         if work.abs() <= f64::EPSILON * kinetic(state, &state.velocities, &state.velocities) {
             return Ok(0.0);
         }
@@ -146,10 +149,8 @@ impl Solved<'_> {
             add(&out, *first, &mut residual, &mut sizes, &mut tangent);
         }
         self.step.add_to(system, state, (&mut residual, &mut sizes), Some(&mut tangent));
-        let (single, _) = system.held(&state.bodies, state.time)?;
         let mut held = vec![false; count];
-        for own in &single {
-            let unknown = own.constraint.terms[0].0 as usize;
+        for unknown in system.held_unknowns(state, state.time)? {
             (held[unknown], forces[unknown]) = (true, 0.0);
         }
         tangent.hold(&held);

@@ -70,8 +70,6 @@ impl System {
     fn error_in_time(&self, step: &TimeStep, state: &SystemState) -> f64 {
         let ends = step.accelerations.iter().zip(&state.accelerations);
         let error: Vec<f64> = ends.map(|(a, b)| step.size * (step.weights.beta - 1.0 / 6.0) * (b - a)).collect();
-        let mut momenta = vec![0.0; error.len()];
-        self.add_momenta(&error, 1.0, &mut momenta);
-        momenta.iter().zip(&error).map(|(p, e)| p * e).sum::<f64>().max(0.0).sqrt()
+        self.product_by_mass(&error, &error).max(0.0).sqrt()
     }
 }

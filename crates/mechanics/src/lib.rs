@@ -30,6 +30,7 @@ pub mod body;
 mod branch;
 pub mod condensed;
 mod conserved;
+mod constitution;
 pub mod contact;
 pub mod contact_law;
 pub mod curve;

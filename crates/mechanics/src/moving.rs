@@ -1,7 +1,7 @@
 //! What moves: momenta, kinetic energy and inertia of bodies with a mass.
 
 use crate::dynamics::Moving;
-use crate::resultants::resultant;
+use crate::resultants::{dot, resultant};
 use crate::system::{System, SystemState};
 use signorini_geometry::Vector;
 
@@ -15,6 +15,13 @@ impl System {
                 mass.add_product(&velocities[own.clone()], factor, &mut out[own]);
             }
         }
+    }
+
+    /// The scalar product of two displacements, or velocities, with the mass.
+    pub(crate) fn product_by_mass(&self, v: &[f64], w: &[f64]) -> f64 {
+        let mut momenta = vec![0.0; v.len()];
+        self.add_momenta(v, 1.0, &mut momenta);
+        dot(&momenta, w)
     }
 
     /// Momenta of all unknowns in a state with these velocities.
@@ -52,7 +59,7 @@ impl System {
         let resultants = self.resultants_of(state, &momenta);
         let of = |(body, [momentum, angular_momentum]): (usize, [Vector<3>; 2])| {
             let own = first[body] as usize..first[body] as usize + self.bodies[body].unknowns();
-            let twice: f64 = momenta[own.clone()].iter().zip(&state.velocities[own]).map(|(p, v)| p * v).sum();
+            let twice = dot(&momenta[own.clone()], &state.velocities[own]);
             Moving { mass: self.mass_of(body, state), kinetic_energy: 0.5 * twice, momentum, angular_momentum }
         };
         resultants.into_iter().enumerate().map(of).collect()
@@ -65,7 +72,7 @@ impl System {
         let of = |mode: &Vec<f64>| {
             let mut momenta = vec![0.0; mode.len()];
             mass.add_product(mode, 1.0, &mut momenta);
-            momenta.iter().zip(mode).map(|(p, v)| p * v).sum::<f64>()
+            dot(&momenta, mode)
         };
         modes[..3].iter().map(of).fold(0.0, f64::max)
     }

@@ -5,10 +5,15 @@ use crate::increment_error::IncrementError;
 use crate::system::{AssemblyError, Held, System, SystemState};
 use signorini_geometry::Vector;
 
+/// A scalar product over unknowns.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// The resultant of forces on the unknowns of a body in a state, and its moment about the origin.
 pub(crate) fn resultant(body: &dyn Body, state: &BodyState, forces: &[f64]) -> [Vector<3>; 2] {
     let modes = body.rigid_modes(state);
-    let along = |mode: usize| forces.iter().zip(&modes[mode]).map(|(f, m)| f * m).sum::<f64>();
+    let along = |mode: usize| dot(forces, &modes[mode]);
     [Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))]
 }
 

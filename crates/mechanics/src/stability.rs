@@ -14,6 +14,7 @@
 use crate::admissible::Admissible;
 use crate::increment_error::IncrementError;
 use crate::points::Order;
+use crate::resultants::dot;
 use crate::system::{Assembled, System, SystemState};
 pub use crate::unstable::Unstable;
 use nalgebra::{DMatrix, DVector};
@@ -399,10 +400,6 @@ impl Pencil {
         }
         Some(Eigenpair { value: 0.0, vector: Vec::new(), count: 0 })
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The eigenvalue of a matrix with the least real part, but for those whose inverse is neutral, with its vector of size 1 and

@@ -180,8 +180,7 @@ impl System {
         let largest = at.sizes[..count].iter().copied().fold(0.0, f64::max);
         let mut forces = at.residual;
         forces.truncate(count);
-        let (single, _) = self.held(&state.bodies, after)?;
-        single.iter().for_each(|h| forces[h.constraint.terms[0].0 as usize] = 0.0);
+        self.held_unknowns(state, after)?.into_iter().for_each(|unknown| forces[unknown] = 0.0);
         let right: Vec<f64> = forces.iter().map(|f| -f).collect();
         state.accelerations = self.by_mass(&self.masses, &right)?;
         state.balancing.clone_from(&state.accelerations);
@@ -319,22 +318,20 @@ impl System {
         state.forces = out_of_balance(at.residual[..count].to_vec(), &step.has_mass);
         Ok(at)
     }
-}
 
-impl System {
     /// The mean forces that Newton's method left in the state that ends an increment.
     pub(crate) fn unbalanced(&self, state: &SystemState) -> Result<Vec<f64>, AssemblyError> {
         let Some(step) = self.step.as_ref().filter(|step| step.conserves()) else { return Ok(Vec::new()) };
         let at = self.assemble(state, state.time, Order::First)?;
         let mut out: Vec<f64> =
             at.residual[..step.known.len()].iter().map(|r| r * (1.0 - step.weights.alpha_f)).collect();
-        self.held_unknowns(state)?.into_iter().for_each(|unknown| out[unknown] = 0.0);
+        self.held_unknowns(state, state.time)?.into_iter().for_each(|unknown| out[unknown] = 0.0);
         Ok(out)
     }
 
-    /// The unknowns that supports hold by themselves.
-    pub(crate) fn held_unknowns(&self, state: &SystemState) -> Result<Vec<usize>, AssemblyError> {
-        let (single, _) = self.held(&state.bodies, state.time)?;
+    /// The unknowns that supports hold by themselves at a time.
+    pub(crate) fn held_unknowns(&self, state: &SystemState, time: f64) -> Result<Vec<usize>, AssemblyError> {
+        let (single, _) = self.held(&state.bodies, time)?;
         Ok(single.iter().map(|held| held.constraint.terms[0].0 as usize).collect())
     }
 }

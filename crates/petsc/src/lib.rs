@@ -17,23 +17,22 @@ mod world;
 #[cfg(feature = "petsc")]
 pub use world::World;
 
-/// Variables by which starters of MPI tell a process how many there are: Open MPI, MPICH and Intel MPI, Slurm.
-const COUNTS: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE"];
+/// A number that a starter of MPI tells each process by a variable of the environment: Open MPI, MPICH and Intel MPI, Slurm.
+fn told(names: &[&str]) -> Option<usize> {
+    names.iter().find_map(|name| std::env::var(name).ok()?.trim().parse().ok())
+}
 
 /// How many processes this one was started with, by the environment.
 pub fn started() -> usize {
-    let of = |name: &&str| std::env::var(name).ok()?.trim().parse::<usize>().ok();
-    COUNTS.iter().find_map(of).unwrap_or(1).max(1)
+    told(&["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE"]).unwrap_or(1).max(1)
 }
 
 /// The number of this one among them, from 0.
 pub fn started_as() -> usize {
-    let of = |name: &&str| std::env::var(name).ok()?.trim().parse::<usize>().ok();
-    ["OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"].iter().find_map(of).filter(|_| started() > 1).unwrap_or(0)
+    told(&["OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"]).filter(|_| started() > 1).unwrap_or(0)
 }
 
 /// How many of them are on this machine.
 pub fn started_here() -> usize {
-    let of = |name: &&str| std::env::var(name).ok()?.trim().parse::<usize>().ok();
-    ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"].iter().find_map(of).unwrap_or(1).max(1)
+    told(&["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"]).unwrap_or(1).max(1)
 }

@@ -163,12 +163,15 @@ impl Counts {
     }
 }
 
-/// Sends a list to each process, and returns those that came from each, one after the other.
-pub fn to_all(send: &[f64], sent: &Counts, received: &Counts) -> Vec<f64> {
-    assert_eq!((send.len(), sent.counts.len()), (sent.all(), received.counts.len()));
-    let mut out = vec![0.0; received.all()];
+/// A function of the shim that sends lists: items, counts and starts of what is sent, and of what comes.
+type Exchange<T> =
+    unsafe extern "C" fn(*const T, *const c_int, *const c_int, *mut T, *const c_int, *const c_int) -> c_int;
+
+/// Sends lists by a function of the shim, and returns what came. Callers have checked the lengths of what is sent.
+fn exchanged<T: Clone + Default>(by: Exchange<T>, (send, sent): (&[T], &Counts), received: &Counts) -> Vec<T> {
+    let mut out = vec![T::default(); received.all()];
     or_end(unsafe {
-        sig_to_all(
+        by(
             send.as_ptr(),
             sent.counts.as_ptr(),
             sent.starts.as_ptr(),
@@ -178,6 +181,12 @@ pub fn to_all(send: &[f64], sent: &Counts, received: &Counts) -> Vec<f64> {
         )
     });
     out
+}
+
+/// Sends a list to each process, and returns those that came from each, one after the other.
+pub fn to_all(send: &[f64], sent: &Counts, received: &Counts) -> Vec<f64> {
+    assert_eq!((send.len(), sent.counts.len()), (sent.all(), received.counts.len()));
+    exchanged(sig_to_all, (send, sent), received)
 }
 
 /// The lists of all processes, one after the other.
@@ -196,18 +205,7 @@ pub fn exchange(send: &[Entry], sent: &Counts) -> Vec<Entry> {
     let mut counts: Vec<c_int> = vec![0; sent.counts.len()];
     or_end(unsafe { sig_exchange_counts(sent.counts.as_ptr(), counts.as_mut_ptr()) });
     let received = Counts::new(counts.iter().map(|n| *n as usize));
-    let mut out = vec![Entry::default(); received.all()];
-    or_end(unsafe {
-        sig_exchange(
-            send.as_ptr(),
-            sent.counts.as_ptr(),
-            sent.starts.as_ptr(),
-            out.as_mut_ptr(),
-            received.counts.as_ptr(),
-            received.starts.as_ptr(),
-        )
-    });
-    out
+    exchanged(sig_exchange, (send, sent), &received)
 }
 
 /// Adds options as PETSc has them on its command line.
@@ -216,24 +214,23 @@ pub fn options(text: &str) -> Result<(), Code> {
     checked(unsafe { sig_options(text.as_ptr()) })
 }
 
+/// A text that a function of the shim writes into a buffer of a length; none where it fails.
+fn text(length: usize, write: impl FnOnce(*mut c_char, c_int) -> c_int) -> Option<String> {
+    let mut buffer: Vec<c_char> = vec![0; length];
+    let code = write(buffer.as_mut_ptr(), length as c_int);
+    (code == 0).then(|| unsafe { CStr::from_ptr(buffer.as_ptr()) }.to_string_lossy().into_owned())
+}
+
 /// Options that nothing has asked for.
 pub fn unused_options() -> Vec<String> {
-    let mut text: Vec<c_char> = vec![0; 4096];
-    if unsafe { sig_unused_options(text.as_mut_ptr(), text.len() as c_int) } != 0 {
-        return Vec::new();
-    }
-    let text = unsafe { CStr::from_ptr(text.as_ptr()) }.to_string_lossy();
-    text.lines().map(str::to_string).collect()
+    let found = text(4096, |buffer, length| unsafe { sig_unused_options(buffer, length) });
+    found.unwrap_or_default().lines().map(str::to_string).collect()
 }
 
 /// The value of an option; none where it is not given.
 pub fn option(name: &CStr) -> Option<String> {
-    let mut text: Vec<c_char> = vec![0; 256];
-    if unsafe { sig_option(name.as_ptr(), text.as_mut_ptr(), text.len() as c_int) } != 0 {
-        return None;
-    }
-    let text = unsafe { CStr::from_ptr(text.as_ptr()) }.to_string_lossy().into_owned();
-    Some(text).filter(|text| !text.is_empty())
+    let found = text(256, |buffer, length| unsafe { sig_option(name.as_ptr(), buffer, length) });
+    found.filter(|text| !text.is_empty())
 }
 
 /// Rows of this process, in compressed form, columns in the numbers of all.

@@ -196,7 +196,7 @@ pub fn meetings(bodies: [&Placed<'_>; 2], reach: f64, snap: f64) -> Vec<Meeting>
         let near = grown(other.mesh().bounds(), reach);
         for (number, corner) in bodies[k].features.corners().iter().enumerate() {
             let x = bodies[1 - k].seen(&bodies[k].point(&corner.point));
-            if !holds(&near, &x) {
+            if !near.contains(&x) {
                 continue;
             }
             let Some((on, gap)) = other.nearest(&x, snap) else { continue };
@@ -274,10 +274,6 @@ fn crossings(bodies: [&Placed<'_>; 2], reach: f64, snap: f64) -> Vec<Meeting> {
 
 fn grown(of: &Aabb<3>, by: f64) -> Aabb<3> {
     Aabb::new(of.min - Vector::<3>::repeat(by), of.max + Vector::<3>::repeat(by))
-}
-
-fn holds(of: &Aabb<3>, x: &Point<3>) -> bool {
-    (0..3).all(|i| of.min[i] <= x[i] && x[i] <= of.max[i])
 }
 
 fn overlap(a: &Aabb<3>, b: &Aabb<3>) -> bool {

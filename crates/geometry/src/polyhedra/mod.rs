@@ -21,6 +21,7 @@ pub use meeting::{Meeting, Placed, meeting, meetings};
 
 use crate::mass_properties::MassProperties;
 use crate::mesh::TriangleMesh;
+use crate::sets::root;
 use crate::{Point, Vector};
 use std::collections::HashMap;
 
@@ -86,15 +87,6 @@ pub struct Features {
     radius: f64,
 }
 
-/// The set with an element, by paths that are shortened.
-fn root(sets: &mut [usize], mut k: usize) -> usize {
-    while sets[k] != k {
-        sets[k] = sets[sets[k]];
-        k = sets[k];
-    }
-    k
-}
-
 impl Features {
     /// The features of a closed mesh with outward normals; none of a mesh that is not closed.
     pub fn new(mesh: TriangleMesh) -> Option<Self> {
@@ -112,14 +104,14 @@ impl Features {
         for k in 0..count {
             mesh.edges(k).iter().enumerate().for_each(|(side, edge)| beside[*edge as usize].push((k, side)));
         }
-        let mut sets: Vec<usize> = (0..count).collect();
+        let mut sets: Vec<u32> = (0..count as u32).collect();
         for pair in &beside {
             let [(a, _), (b, _)] = pair[..] else { return None };
             let none = Vector::<3>::zeros();
             let is_flat = normals[a].cross(&normals[b]).norm() <= FLAT && normals[a].dot(&normals[b]) > 0.0;
             if is_flat || normals[a] == none || normals[b] == none {
-                let [a, b] = [a, b].map(|k| root(&mut sets, k));
-                sets[a.max(b)] = a.min(b);
+                let [a, b] = [a, b].map(|k| root(&mut sets, k as u32));
+                sets[a.max(b) as usize] = a.min(b);
             }
         }
         // A facet has the plane of its largest triangle.
@@ -128,7 +120,7 @@ impl Features {
         let mut largest: Vec<f64> = Vec::new();
         let mut facet_of = Vec::with_capacity(count);
         for k in 0..count {
-            let of = root(&mut sets, k);
+            let of = root(&mut sets, k as u32);
             let number = *numbers.entry(of).or_insert_with(|| {
                 facets.push(Facet { point: mesh.corners(k)[0], normal: normals[k] });
                 largest.push(0.0);

@@ -187,7 +187,8 @@ impl<'a> Motion<'a> {
             return BTreeMap::new();
         }
         let bodies = along(self.bodies_of(&from.bodies), from, (step, twists), share);
-        let wanted = Wanted { by: &|id, _| ids.contains(&id), reach: NEAR * self.size, named: &BTreeSet::new() };
+        let by = |id: Id, _: f64| ids.contains(&id);
+        let wanted = Wanted::near(&by, NEAR * self.size);
         let found = touching(&self.contacts, self.bodies_of(&bodies), twists, Order::First, &wanted);
         found.into_iter().map(|p| (p.id, p)).collect()
     }
@@ -237,7 +238,7 @@ impl<'a> Motion<'a> {
             let bodies = along(self.bodies_of(&from.bodies), from, (&step, twists), 1.0);
             let now = self.bodies_of(&bodies);
             let by = |id: Id, gap: f64| gap < NEAR * self.size || seen.contains(&id);
-            let wanted = Wanted { by: &by, reach: NEAR * self.size, named: &BTreeSet::new() };
+            let wanted = Wanted::near(&by, NEAR * self.size);
             let points = touching(&self.contacts, now, twists, Order::Second, &wanted);
             seen.extend(points.iter().map(|p| p.id));
             let slips = self.slips(from, (&step, twists), &points, &mut start);
@@ -325,7 +326,8 @@ impl<'a> Motion<'a> {
         let n = self.count();
         let still: Twists = vec![None; bodies.len()];
         let touches = TOUCHES * self.size;
-        let wanted = Wanted { by: &|_, gap| gap <= touches, reach: touches, named: &BTreeSet::new() };
+        let by = |_: Id, gap: f64| gap <= touches;
+        let wanted = Wanted::near(&by, touches);
         let points = touching(&self.contacts, self.bodies_of(bodies), &still, Order::Second, &wanted);
         let (single, coupled) = self.system.held(bodies, time)?;
         let lacks = |h: &Held| h.constraint.violation.abs() > touches;

@@ -14,7 +14,6 @@ use crate::system::{AssemblyError, Held, System, SystemState};
 use nalgebra::DMatrix;
 use signorini_contact::Status;
 use signorini_geometry::Vector;
-use std::collections::BTreeSet;
 
 /// Share of the limit of friction from which a point slips.
 const AT_LIMIT: f64 = 1e-8;
@@ -159,7 +158,7 @@ impl<'a> Motion<'a> {
         let at = self.bodies_of(&state.bodies);
         let is_of_polyhedra = Polyhedra::of(only[0], &at.sides(only[0])).is_some();
         let by = |id: Id, _: f64| id.place == 0 || is_of_polyhedra;
-        let wanted = Wanted { by: &by, reach: self.size, named: &BTreeSet::new() };
+        let wanted = Wanted::near(&by, self.size);
         let mut nearest = touching(&only, at, &still, Order::First, &wanted);
         let open = |p: &Touching<'_>| SiteResult {
             x: p.centre,

@@ -116,6 +116,16 @@ pub struct Wanted<'w> {
     pub named: &'w BTreeSet<Id>,
 }
 
+/// No pairs of polyhedra.
+static NONE: BTreeSet<Id> = BTreeSet::new();
+
+impl<'w> Wanted<'w> {
+    /// By name and gap, of polyhedra within a reach.
+    pub fn near(by: &'w dyn Fn(Id, f64) -> bool, reach: f64) -> Self {
+        Wanted { by, reach, named: &NONE }
+    }
+}
+
 /// The points of all contacts that are wanted.
 pub fn touching<'a>(
     contacts: &[&'a Contact],

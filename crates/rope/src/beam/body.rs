@@ -9,18 +9,15 @@ use crate::centreline::Centreline;
 use crate::curve_body::{self, CurveBody, SectionMotion};
 use crate::fields::{add_element_data, add_point_data, through};
 use crate::hermite::{self, THREE, TWO};
-use crate::mass::{self, SectionMass};
+use crate::mass::SectionMass;
 use crate::place::{self, Line, Part};
 use crate::quaternion::{self, Quaternion, spin_map};
 use signorini_geometry::{Matrix, Point, Vector};
 use signorini_mechanics::Curve;
-use signorini_mechanics::SpinInertia;
 use signorini_mechanics::body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Function, Hold, Inertial, Kinematics, Load, Mass, Master, Order, PlaceError, Sampling, Site, Slack,
-    SlavePoint,
+    Elimination, Function, Hold, Kinematics, Load, Master, Order, PlaceError, Sampling, Site, Slack, SlavePoint,
 };
-use std::collections::BTreeMap;
 
 /// Numbers of a node in a configuration, and unknowns.
 pub(super) const NUMBERS: usize = 10;
@@ -84,13 +81,13 @@ impl Beam {
     }
 
     /// Spins of an element: first unknowns of those of its nodes and of its middle.
-    fn spins_of(&self, element: usize) -> [u32; 3] {
+    pub(super) fn spins_of(&self, element: usize) -> [u32; 3] {
         let unknowns = self.unknowns_of(element);
         SPINS.map(|k| unknowns[k])
     }
 
     /// The axes of the section whose spins begin with an unknown.
-    fn frame(&self, state: &BodyState, first: u32) -> Matrix<3> {
+    pub(super) fn frame(&self, state: &BodyState, first: u32) -> Matrix<3> {
         let (first, of_nodes) = (first as usize, NODE * self.line.nodes());
         let at = if first < of_nodes { first / NODE * NUMBERS + 6 } else { self.middle((first - of_nodes) / 3) };
         quaternion::rotation(&Quaternion::from_column_slice(&state.configuration[at..at + 4]))
@@ -416,49 +413,6 @@ impl Kinematics for Beam {
 
     fn point(&self, on: Option<&str>) -> Option<Point<3>> {
         place::point(&self.line, &self.start, &place::part(&self.name, &self.line, on).ok()?)
-    }
-}
-
-impl Inertial for Beam {
-    /// Rotations count at nodes and middles, by Simpson's rule.
-    fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
-        let Some(own) = &self.mass else { return Ok(None) };
-        let mut out = mass::consistent(&self.line, own.mass, NODE);
-        let mut lengths: BTreeMap<u32, f64> = BTreeMap::new();
-        for e in 0..self.elements.len() {
-            let parts = self.spins_of(e).into_iter().zip([1.0, 1.0, 4.0]);
-            parts.for_each(|(u, part)| *lengths.entry(u).or_default() += self.line.lengths[e] * part / 6.0);
-        }
-        let start = self.start();
-        out.spins = (lengths.into_iter())
-            .map(|(first, length)| {
-                let frame = self.frame(&start, first);
-                let own = Matrix::<3>::from_diagonal(&(Vector::<3>::from(own.inertia) * length));
-                let inertia = frame * own * frame.transpose();
-                SpinInertia { unknowns: [first, first + 1, first + 2], inertia }
-            })
-            .collect();
-        Ok(Some(out))
-    }
-
-    /// A section stays normal to the line: `ω = t × v'/|t| + (ω·t) t`.
-    fn turn_sections(&self, velocities: &mut [f64], turning: &dyn Fn(&Point<3>) -> Vector<3>) {
-        let mut of_line = vec![0.0; self.start.len()];
-        for node in 0..self.line.nodes() {
-            of_line[NUMBERS * node..NUMBERS * node + 6].copy_from_slice(&velocities[NODE * node..NODE * node + 6]);
-        }
-        for element in 0..self.elements.len() {
-            for (first, xi) in self.spins_of(element).into_iter().zip([0.0, 1.0, 0.5]) {
-                let (at, change) = (self.line.jet(&self.start, element, xi), self.line.jet(&of_line, element, xi));
-                let t = at.d1.normalize();
-                let spin = t.cross(&change.d1) / at.d1.norm() + t * t.dot(&turning(&at.x));
-                velocities[first as usize..first as usize + 3].copy_from_slice(spin.as_slice());
-            }
-        }
-    }
-
-    fn orientation(&self, state: &BodyState, unknowns: [u32; 3]) -> Matrix<3> {
-        self.frame(state, unknowns[0]) * self.frame(&self.start(), unknowns[0]).transpose()
     }
 }
 

@@ -6,6 +6,7 @@
 
 pub mod body;
 pub mod element;
+mod inertia;
 pub mod start;
 pub mod strain;
 

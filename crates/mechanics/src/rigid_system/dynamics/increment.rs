@@ -134,7 +134,8 @@ impl<'a, 'b> InTime<'a, 'b> {
     fn closed(&self, bodies: &[BodyState]) -> BTreeSet<Id> {
         let still = vec![None; bodies.len()];
         let touches = self.touches();
-        let wanted = Wanted { by: &|_, gap| gap <= touches, reach: touches, named: &BTreeSet::new() };
+        let by = |_: Id, gap: f64| gap <= touches;
+        let wanted = Wanted::near(&by, touches);
         let at = self.motion.bodies_of(bodies);
         touching(&self.motion.contacts, at, &still, Order::First, &wanted).into_iter().map(|p| p.id).collect()
     }
@@ -272,7 +273,7 @@ impl<'a, 'b> InTime<'a, 'b> {
                 false
             };
             let still = vec![None; bodies.len()];
-            let wanted = Wanted { by: &by, reach: NEAR * self.motion.size, named: &BTreeSet::new() };
+            let wanted = Wanted::near(&by, NEAR * self.motion.size);
             touching(&self.motion.contacts, self.motion.bodies_of(bodies), &still, Order::First, &wanted);
             let (scaled, gap) = found.get();
             Least { scaled, gap }

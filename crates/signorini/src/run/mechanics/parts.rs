@@ -125,6 +125,7 @@ impl MechanicsModel {
             self.control.conditions = vec![Condition::Apart; self.plan.system.contacts.len()];
         }
         let whole = time - before;
+        let smallest = SMALLEST_INCREMENT * whole;
         let mut reached = before;
         let mut size = self.control.size.filter(|_| tolerance.is_some()).unwrap_or(whole).min(whole);
         // By when something happens to a contact.
@@ -164,14 +165,11 @@ impl MechanicsModel {
                         (Some(tolerance), Some(moved)) => self.control.judge(moved, part, tolerance),
                         _ => 0.0,
                     };
-                    if error > 1.0 && part > SMALLEST_INCREMENT * whole {
+                    let is_inexact = error > 1.0 || result.moved.as_ref().is_some_and(gains_by_contact);
+                    if is_inexact && part > smallest {
                         self.plan.system.put_back(&kept);
-                        size = self.control.size.unwrap_or(whole).max(SMALLEST_INCREMENT * whole);
-                        continue;
-                    }
-                    if result.moved.as_ref().is_some_and(gains_by_contact) && part > SMALLEST_INCREMENT * whole {
-                        self.plan.system.put_back(&kept);
-                        size = part * CUT;
+                        let allowed = self.control.size.filter(|_| error > 1.0);
+                        size = allowed.map_or(part * CUT, |size| size.max(smallest));
                         continue;
                     }
                     let conditions = events::conditions(&self.plan.system, &result.sites);
@@ -202,7 +200,7 @@ impl MechanicsModel {
                     self.state = state;
                     reached = target;
                     size = match self.control.size.filter(|_| tolerance.is_some()) {
-                        Some(size) => size.max(SMALLEST_INCREMENT * whole),
+                        Some(size) => size.max(smallest),
                         None => size * GROWTH,
                     };
                 }
@@ -214,7 +212,7 @@ impl MechanicsModel {
                         error,
                         IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
                     );
-                    if !curable || part <= SMALLEST_INCREMENT * whole || whole <= 0.0 {
+                    if !curable || part <= smallest || whole <= 0.0 {
                         let mut failure = self.failed(&error, total.residuals);
                         if reached > before {
                             failure.text += &format!(" (the last equilibrium is at t = {reached:.6})");

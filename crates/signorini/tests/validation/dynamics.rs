@@ -219,7 +219,8 @@ fn a_block_swings_on_springs_with_order_two() {
     };
     for tolerance in [1e-2, 1e-3, 1e-4] {
         let ratio = off(tolerance) / tolerance;
-        assert!((0.05..1.0).contains(&ratio.abs()), "{tolerance}: {ratio}");
+        // Three times less with an estimate that is three times too large.
+        assert!((0.2..0.5).contains(&ratio.abs()), "{tolerance}: {ratio}");
     }
 }
 

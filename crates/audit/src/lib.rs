@@ -66,10 +66,11 @@ pub fn audited(setting: &Setting, before: Option<&State>, now: &State, stability
         out.extend(jumps::check(setting, before, now));
         out.extend(path::check(setting, before, now));
     }
-    out.extend(tractions::check(setting, before, now));
+    let resolution = resolution::check(setting, before, now);
+    out.extend(tractions::check(setting, before, now, &resolution));
     out.extend(balance::check(setting, now));
     out.extend(uniqueness::check(setting, now, &bounds));
-    out.extend(resolution::check(setting, before, now));
+    out.extend(resolution);
     out.extend(range::check(setting, now));
     out.extend(stability::check(stability));
     Audited { findings: worst(out), bounds }

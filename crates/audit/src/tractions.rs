@@ -25,14 +25,17 @@ const NOTHING: f64 = 1e-8;
 /// Checks the tractions of all contacts.
 ///
 /// Slip is that of the whole increment. Of a free rigid body that moved far in it, the last slip may have had another direction:
-/// friction along the slip is then only reported.
-pub fn check(setting: &Setting, before: Option<&State>, state: &State) -> Vec<Finding> {
+/// friction along the slip is then only reported; so is that in a zone that the cells do not resolve, as `resolution` tells,
+/// where the direction of friction is as rough as its pressure.
+pub fn check(setting: &Setting, before: Option<&State>, state: &State, resolution: &[Finding]) -> Vec<Finding> {
     let of_contacts = state.contacts.iter().map(|touches| size_of(touches));
     let largest = of_contacts.chain(state.forces.iter().map(|a| a.force.norm())).fold(0.0, f64::max);
     let list = setting.contacts.iter().zip(&state.contacts);
     let of = |(contact, touches): (&Contact, &Vec<Touch>)| {
         let turns = contact.bodies.iter().any(|body| moved_far(setting, before, state, *body));
-        of_contact(contact, touches, NOTHING * largest, if turns { f64::INFINITY } else { REFUSED_SIGN })
+        let is_rough = |f: &Finding| f.outcome != Outcome::Fine && f.on.as_deref() == Some(contact.name.as_str());
+        let is_told = turns || resolution.iter().any(is_rough);
+        of_contact(contact, touches, NOTHING * largest, if is_told { f64::INFINITY } else { REFUSED_SIGN })
     };
     list.flat_map(of).collect()
 }

@@ -545,7 +545,7 @@ fn surfaces_act_by_their_law() {
         let touch = &mut case.now.contacts[0][0];
         touch.x = touch.foot - touch.normal * 0.1;
         spoil(touch);
-        let found = signorini_audit::tractions::check(&case.setting, None, &case.now);
+        let found = signorini_audit::tractions::check(&case.setting, None, &case.now, &[]);
         found.into_iter().filter(|f| f.outcome == signorini_audit::Outcome::Refused).count()
     };
     assert_eq!(refused(&|_| ()), 0);

@@ -6,6 +6,7 @@
 //! points these integrals are the weights of a rule that is exact for the stiffness. Some weights may be negative.
 
 use crate::error::CellsError;
+use crate::polygon::{area_vector, clip, clip_line, fan, polygon_points, triangle_points};
 use crate::region::{BoundaryPoint, FacetFoot, Filling, Integration, MaterialRule, Region};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
@@ -168,14 +169,11 @@ impl Region<3> for FacetBody {
                     }
                 }
             }
-            for part in fan(&within) {
-                if on_material_side(&part, b, &normal) {
-                    let points = triangle_points(&part, degree + 2);
-                    boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
-                }
-                if lies_on_end {
-                    continue;
-                }
+            if on_material_side(&within, b, &normal) {
+                let points = polygon_points(&within, degree + 2, size.min());
+                boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
+            }
+            for part in fan(&within).filter(|_| !lies_on_end) {
                 for (x, w) in triangle_points(&part, 3 * degree + 2) {
                     let integral = lagrange.integrals(unit(&x, 0));
                     let (y, z) = (lagrange.values(unit(&x, 1)), lagrange.values(unit(&x, 2)));
@@ -297,74 +295,14 @@ impl Region<3> for FacetBody {
     }
 }
 
-/// The part of a polygon with `sign (x_axis - at) ≥ 0` (Sutherland & Hodgman).
-fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
-    let height = |x: &Point<3>| sign * (x[axis] - at);
-    if polygon.iter().all(|x| height(x) >= 0.0) {
-        return polygon;
-    }
-    let mut out = Vec::with_capacity(polygon.len() + 1);
-    for (i, a) in polygon.iter().enumerate() {
-        let b = &polygon[(i + 1) % polygon.len()];
-        let (ha, hb) = (height(a), height(b));
-        if ha >= 0.0 {
-            out.push(*a);
-        }
-        if (ha >= 0.0) != (hb >= 0.0) {
-            let mut x = a + (b - a) * (ha / (ha - hb));
-            x[axis] = at;
-            out.push(x);
-        }
-    }
-    out
-}
-
-/// The part of a line with `sign (x_axis - at) ≥ 0`; nothing of one that has none.
-fn clip_line(line: &[Point<3>], axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
-    let [p, q] = line[..] else { return Vec::new() };
-    let [a, b] = [p, q].map(|x| sign * (x[axis] - at));
-    let cut = || p + (q - p) * (a / (a - b));
-    match (a >= 0.0, b >= 0.0) {
-        (true, true) => vec![p, q],
-        (true, false) => vec![p, cut()],
-        (false, true) => vec![cut(), q],
-        (false, false) => Vec::new(),
-    }
-}
-
-fn fan(polygon: &[Point<3>]) -> impl Iterator<Item = [Point<3>; 3]> + '_ {
-    (2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]])
-}
-
-fn area_vector(polygon: &[Point<3>]) -> Vector<3> {
-    fan(polygon).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a))).sum()
-}
-
 /// Whether a piece within a box, or on a side of it with the material on this side, belongs to it.
-fn on_material_side(part: &[Point<3>; 3], b: &Aabb<3>, normal: &Vector<3>) -> bool {
+fn on_material_side(part: &[Point<3>], b: &Aabb<3>, normal: &Vector<3>) -> bool {
     (0..3).all(|k| {
         let slack = 1e-12 * (b.max[k] - b.min[k]);
         let on = |at: f64| part.iter().all(|x| (x[k] - at).abs() <= slack);
         let beyond = (on(b.max[k]) && normal[k] < 0.0) || (on(b.min[k]) && normal[k] > 0.0);
         !beyond
     })
-}
-
-/// Gauss points of a triangle, collapsed from the square.
-fn triangle_points([a, b, c]: &[Point<3>; 3], n: usize) -> Vec<(Point<3>, f64)> {
-    let (u, v) = (b - a, c - a);
-    let area = u.cross(&v).norm();
-    if area == 0.0 {
-        return Vec::new();
-    }
-    let line = gauss_legendre(n);
-    let mut out = Vec::with_capacity(n * n);
-    for (s, ws) in &line {
-        for (t, wt) in &line {
-            out.push((a + u * (s * (1.0 - t)) + v * *t, area * ws * wt * (1.0 - t)));
-        }
-    }
-    out
 }
 
 /// Lagrange polynomials on `[0, 1]`.

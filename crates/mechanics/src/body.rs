@@ -404,8 +404,9 @@ pub trait ContactSides {
 
 /// A body that may hang without carrying anything.
 pub trait Slack {
-    /// Whether no part of the body carries anything, nor would if it moved a little: a rope that is longer than its way.
-    fn is_slack(&self, _state: &BodyState) -> bool {
+    /// Whether all parts of the body are longer than their way by more than a share of their length, and carry nothing: an
+    /// unstretched rope is longer than its way by more than -1e-9.
+    fn is_slack(&self, _state: &BodyState, _longer: f64) -> bool {
         false
     }
 

@@ -138,25 +138,39 @@ impl Problem<'_> {
         let sizes = self.system.row_sizes(&out, self.stiffness());
         let mut held = vec![false; count];
         out.single.iter().for_each(|h| held[h.constraint.terms[0].0 as usize] = true);
-        let size = self.system.size();
-        let mut most = [0.0f64; 2];
-        (0..count).for_each(|k| most[usize::from(self.is_spin[k])] = most[usize::from(self.is_spin[k])].max(sizes[k]));
-        most[0] = most[0].max(most[1] / (size * size)).max(f64::MIN_POSITIVE);
-        most[1] = most[1].max(SLACK * most[0] * size * size);
-        self.rounding = [0.0; 2];
-        self.scales = Vec::with_capacity(count);
-        for k in 0..count {
-            let kind = usize::from(self.is_spin[k]);
-            let position = if kind == 1 { 1.0 } else { size };
-            if !held[k] {
-                self.rounding[kind] = self.rounding[kind].max(4.0 * f64::EPSILON * sizes[k] * position);
-            }
-            self.scales.push(sizes[k].max(SLACK * most[kind]));
-        }
-        // Moments feel the rounding of positions by the arm that couples both, `|K_θx|² <= K_θθ K_xx`.
-        self.rounding[1] = self.rounding[1].max(self.rounding[0] * (most[1] / most[0]).sqrt());
+        let most = self.stiffest(&sizes);
+        self.scales = (0..count).map(|k| sizes[k].max(SLACK * most[usize::from(self.is_spin[k])])).collect();
+        self.set_rounding(&sizes, &held);
         self.first = Some(out);
         Ok(())
+    }
+
+    /// The largest of some values of unknowns: of positions and of rotations.
+    fn largest(&self, values: &[f64]) -> [f64; 2] {
+        let mut out = [0.0f64; 2];
+        self.is_spin.iter().zip(values).for_each(|(spin, v)| out[usize::from(*spin)] = out[usize::from(*spin)].max(*v));
+        out
+    }
+
+    /// The largest stiffness of unknowns, by the `sizes` of the rows of a tangent: each at least what the other gives by the size
+    /// of the bodies.
+    fn stiffest(&self, sizes: &[f64]) -> [f64; 2] {
+        let area = self.system.size().powi(2);
+        let [positions, spins] = self.largest(sizes);
+        let positions = positions.max(spins / area).max(f64::MIN_POSITIVE);
+        [positions, spins.max(SLACK * positions * area)]
+    }
+
+    /// What rounding of positions leaves of forces, by the `sizes` of the rows of a tangent. A rope that starts slack has its
+    /// stiffness only later.
+    fn set_rounding(&mut self, sizes: &[f64], held: &[bool]) {
+        let size = self.system.size();
+        let of = |k: usize| if held[k] { 0.0 } else { sizes[k] * if self.is_spin[k] { 1.0 } else { size } };
+        let free: Vec<f64> = (0..self.is_spin.len()).map(of).collect();
+        self.rounding = self.largest(&free).map(|most| 4.0 * f64::EPSILON * most);
+        let most = self.stiffest(sizes);
+        // Moments feel the rounding of positions by the arm that couples both, `|K_θx|² <= K_θθ K_xx`.
+        self.rounding[1] = self.rounding[1].max(self.rounding[0] * (most[1] / most[0]).sqrt());
     }
 
     /// Root of twice the energy of a residual on the springs of the unknowns.
@@ -300,9 +314,9 @@ impl Equations for Problem<'_> {
     }
 
     fn step(&mut self, at: &SystemState) -> Result<Vec<f64>, IncrementError> {
-        let mut out = match self.first.take() {
-            Some(first) => first,
-            None => self.assemble(at, Order::Second)?,
+        let (mut out, is_first) = match self.first.take() {
+            Some(first) => (first, true),
+            None => (self.assemble(at, Order::Second)?, false),
         };
         let n = out.residual.len();
         let mut right: Vec<f64> = out.residual.iter().map(|r| -r).collect();
@@ -311,6 +325,9 @@ impl Equations for Problem<'_> {
             let (unknown, factor) = h.constraint.terms[0];
             held[unknown as usize] = true;
             right[unknown as usize] = -h.constraint.violation / factor;
+        }
+        if !is_first {
+            self.set_rounding(&self.system.row_sizes(&out, self.stiffness()), &held);
         }
         let system = self.system;
         if let Some(division) = &system.division {

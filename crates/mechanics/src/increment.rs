@@ -28,6 +28,9 @@ pub struct IncrementResult {
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
+    /// Force on both ends of each curve by the support or the loads there; none of ends that are free or held in part, and of
+    /// other bodies.
+    pub end_forces: Vec<[Option<Vector<3>>; 2]>,
     /// Force of each linear constraint on its nodes, per unit of their factors.
     pub constraint_forces: Vec<f64>,
     pub energy: f64,
@@ -271,6 +274,13 @@ impl System {
             Err(error) if is_curable(&error) && !self.follows_its_path() => error,
             found => return found,
         };
+        // A rope that is as long as its way holds nothing across itself before it is pulled.
+        if self.step.is_none() && !self.is_slack(start) && self.carries_nothing(start) {
+            match self.settled(start, time, solved, report) {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
         // A rope that is drawn along moves off all that it touches by a trial as stiff as it is along itself, not across; and so
         // does a plate that bends by one as stiff as its cells.
         let found = self.with_trials(&|is_soft| !is_soft, |system, changes| {
@@ -462,6 +472,7 @@ impl System {
             iterations,
             history,
             sites,
+            end_forces: self.end_forces(&at, state, time),
             support_forces,
             constraint_forces,
             energy: at.energy,

@@ -14,6 +14,8 @@ use crate::points::Order;
 use crate::system::{System, SystemState};
 use signorini_solve::newton::Converged;
 
+/// Share of its length by which what is slack is longer than its way: more than rounding.
+const LONGER: f64 = 1e-9;
 /// Force of the first springs relative to all that acts: ropes sag by a thirtieth of their span.
 const FIRST: f64 = 4.0;
 /// What is left of the springs after a step, the longest step, and their force, relative to all that acts, of which nothing is
@@ -31,7 +33,12 @@ const MOST_LEFT: f64 = 0.97;
 impl System {
     /// Whether something has no stiffness because it is slack.
     pub(crate) fn is_slack(&self, at: &SystemState) -> bool {
-        self.bodies.iter().zip(&at.bodies).any(|(body, state)| body.is_slack(state))
+        self.bodies.iter().zip(&at.bodies).any(|(body, state)| body.is_slack(state, LONGER))
+    }
+
+    /// Whether something has no stiffness across itself because it carries nothing: slack, or as long as its way.
+    pub(crate) fn carries_nothing(&self, at: &SystemState) -> bool {
+        self.bodies.iter().zip(&at.bodies).any(|(body, state)| body.is_slack(state, -LONGER))
     }
 
     /// Newton's method from a state with slack ropes.

@@ -319,8 +319,8 @@ impl ContactSides for Cable {
 }
 
 impl Slack for Cable {
-    fn is_slack(&self, state: &BodyState) -> bool {
-        let is_slack = |(e, own): (usize, &Element)| own.is_slack(&self.line.nodal(&state.configuration, e));
+    fn is_slack(&self, state: &BodyState, longer: f64) -> bool {
+        let is_slack = |(e, own): (usize, &Element)| own.is_slack(&self.line.nodal(&state.configuration, e), longer);
         self.elements.iter().enumerate().all(is_slack)
     }
 

@@ -9,7 +9,6 @@
 //! `a ∝ P_2(ξ)` without energy: a share of the weights goes to three points, as in a beam with shear. A cable without bending
 //! stiffness gets a small constant share instead. Geometric terms take forces predicted from the step before.
 
-use crate::chain::body::LONGER;
 use crate::hermite::{self, THREE, TWO};
 use nalgebra::{SMatrix, SVector};
 use signorini_geometry::{Matrix, Vector};
@@ -93,10 +92,10 @@ impl Element {
         }
     }
 
-    /// Whether it carries nothing, nor would after a little more stretch.
-    pub fn is_slack(&self, nodes: &[Vector<3>; 4]) -> bool {
+    /// Whether it is longer than its way by more than a share of its length, and carries nothing.
+    pub fn is_slack(&self, nodes: &[Vector<3>; 4], longer: f64) -> bool {
         let strain = |k: usize| self.first(self.stretch_rule(k).0, nodes).1.norm() / self.unstrained[k] - 1.0;
-        self.carries == Carries::TensionOnly && self.bending == 0.0 && (0..5).all(|k| strain(k) < -LONGER)
+        self.carries == Carries::TensionOnly && self.bending == 0.0 && (0..5).all(|k| strain(k) < -longer)
     }
 
     /// The forces in a state.

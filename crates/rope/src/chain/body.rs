@@ -320,9 +320,6 @@ impl CurveBody for Chain {
     }
 }
 
-/// Share of its length by which what is slack is longer than its way: more than rounding.
-pub(crate) const LONGER: f64 = 1e-9;
-
 impl Body for Chain {
     fn name(&self) -> &str {
         &self.name
@@ -506,8 +503,8 @@ impl ContactSides for Chain {
 }
 
 impl Slack for Chain {
-    fn is_slack(&self, state: &BodyState) -> bool {
-        let is_long = |e: usize| self.element(state, e).0.norm() < (1.0 - LONGER) * self.unstrained_length(state, e);
+    fn is_slack(&self, state: &BodyState, longer: f64) -> bool {
+        let is_long = |e: usize| self.element(state, e).0.norm() < (1.0 - longer) * self.unstrained_length(state, e);
         self.active(state).all(|e| self.drives[e] == Drive::Elastic && is_long(e))
     }
 

@@ -4,6 +4,7 @@ mod facets;
 mod image;
 mod legendre;
 mod moments;
+mod polygon;
 mod space;
 mod spread;
 mod tree;

@@ -161,7 +161,11 @@ pub fn step_report(
             })
             .collect(),
         probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
-        curves: shown.curves.iter().map(|c| (c.name.clone(), curve_report(c))).collect(),
+        curves: shown
+            .curves
+            .iter()
+            .map(|c| (c.name.clone(), curve_report(c, &end_forces(system, result, c))))
+            .collect(),
         cells: means.collect(),
         free_bodies: poses.collect(),
         kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
@@ -182,13 +186,20 @@ pub(super) fn stability_report(system: &System, told: &Stability) -> StabilityRe
     }
 }
 
-fn curve_report(curve: &CurveShown) -> CurveReport {
+/// The forces on the ends of a rope: they are its tension there. The axial force of a beam is one component of them.
+fn end_forces(system: &System, result: &IncrementResult, curve: &CurveShown) -> [Option<f64>; 2] {
+    let body = system.bodies.iter().position(|b| b.name() == curve.name).filter(|_| curve.is_rope);
+    let forces = body.and_then(|body| result.end_forces.get(body)).copied().unwrap_or_default();
+    forces.map(|force| force.map(|f| f.norm()))
+}
+
+fn curve_report(curve: &CurveShown, [start, end]: &[Option<f64>; 2]) -> CurveReport {
     let forces = &curve.forces;
     CurveReport {
-        start_tension: forces.first().copied().unwrap_or(0.0),
-        end_tension: forces.last().copied().unwrap_or(0.0),
-        max_tension: forces.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        min_tension: forces.iter().copied().fold(f64::INFINITY, f64::min),
+        start_tension: start.or(forces.first().copied()).unwrap_or(0.0),
+        end_tension: end.or(forces.last().copied()).unwrap_or(0.0),
+        max_tension: forces.iter().chain(start).chain(end).copied().fold(f64::NEG_INFINITY, f64::max),
+        min_tension: forces.iter().chain(start).chain(end).copied().fold(f64::INFINITY, f64::min),
         slack_cells: curve.slack_cells(),
         section: section_report(curve),
         unstrained_length: curve.unstrained_length,

@@ -57,7 +57,7 @@ pub enum Motion {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeMotion {
-    /// Reference point for forces and rotations, lengths; the centre of the shape if left out. With a mass it is the centre of mass.
+    /// Reference point for forces and rotations, lengths; if left out the centre of the volume, or of the shape where its volume is not known. With a mass it is the centre of mass.
     pub center: Option<List<Value>>,
     /// Mass per volume, from which mass, centre of mass and inertia of a closed shape follow; no mass if left out.
     pub density: Option<Value>,
@@ -77,6 +77,7 @@ pub struct FreeMotion {
 pub struct Prescribed {
     /// Displacement along each axis, lengths, as expressions of t.
     pub displacement: Option<List<Value>>,
-    /// Rotation vector in radians, as expressions of t.
+    /// Rotation vector in radians about the centre of the shape, which is the origin of surfaces from files and of level sets, as
+    /// expressions of t.
     pub rotation: Option<List<Value>>,
 }

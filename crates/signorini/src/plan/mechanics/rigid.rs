@@ -44,9 +44,10 @@ impl Planner<'_> {
         let mut centre = shape.centre();
         let motion = match &key.motion {
             Some(Stated::Free(free)) => {
-                if let Some(stated) = &free.center {
-                    centre = self.position(stated, LENGTH)?;
-                }
+                centre = match &free.center {
+                    Some(stated) => self.position(stated, LENGTH)?,
+                    None => self.centre_of(name, key, shape.as_ref())?,
+                };
                 match self.space {
                     Space::Axisymmetric => Motion::FreeAlongAxis,
                     space => Motion::Free { plane: space != Space::ThreeD },
@@ -207,6 +208,29 @@ impl Planner<'_> {
             _ if in_plane => None,
             _ => shape.mass_properties(),
         })
+    }
+
+    /// The centre of a free body that states none: that of its volume where it is known, else of its shape. A surface from a file
+    /// and a level set have no centre of their own.
+    fn centre_of(&self, name: &str, key: &Rigid, shape: &dyn RigidShape) -> Result<Point<3>, CaseError> {
+        if key.side != Some(Side::Inside)
+            && let Ok(Some(solid)) = self.solid_of(key, shape)
+        {
+            return Ok(solid.centre);
+        }
+        let has_none = matches!(
+            &key.shape,
+            Shape::Nurbs(_) | Shape::Stl(_) | Shape::File(_) | Shape::Triangles(_) | Shape::LevelSet(_)
+        );
+        let acts = |on: &str| on == name || on.starts_with(&format!("{name}:"));
+        let load = self.problem.loads.iter().find(|(_, load)| has_none && acts(&load.on));
+        match load {
+            Some((_, load)) => Err(self
+                .problem
+                .error(&load.on, format!("where the centre of `{name}` is, through which the load acts, is not known for a shape of this kind"))
+                .help("give `motion.free.center`; closed triangle meshes have one")),
+            None => Ok(shape.centre()),
+        }
     }
 
     /// The points of a rigid body that are tested, and its size: a ball at its centre, a triangle mesh at its vertices.

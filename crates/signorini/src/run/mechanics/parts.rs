@@ -184,8 +184,9 @@ impl MechanicsModel {
                     }
                     if happens {
                         self.told.events.extend(self.events(&conditions, [reached, target]));
-                        bound = None;
                     }
+                    // What happened in a long part need not in short ones.
+                    bound = bound.filter(|bound| !happens && *bound > target);
                     self.control.conditions = conditions;
                     total.add(&mut result);
                     if target == time {

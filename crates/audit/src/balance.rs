@@ -2,7 +2,7 @@
 //! all parts of them are known.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Contact, Form, Setting, State};
+use crate::state::{Body, Contact, Form, Setting, State};
 use signorini_geometry::{Point, Vector};
 
 /// Part of the forces on a body that iterations may leave, and from which the state is none.
@@ -89,13 +89,14 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
         let message = format!("forces on `{name}` are not finite numbers");
         return Some(Finding::new(Check::Balance, Outcome::Refused, message).on(name));
     }
-    if size <= setting.bodies[body].rounding {
+    let Body { rounding, form, .. } = &setting.bodies[body];
+    if size <= *rounding {
         return None;
     }
     let lack = setting.space.directions().iter().map(|i| force[*i].abs()).fold(0.0, f64::max);
-    let lack = (lack - bent - setting.bodies[body].rounding).max(0.0) / size;
+    let lack = (lack - bent - rounding).max(0.0) / size;
     let turns = setting.space.axes().iter().map(|i| moment[*i].abs()).fold(0.0, f64::max);
-    let arms = arms.max(LEAST_ARM * reach.max(setting.bodies[body].form.size() * size));
+    let arms = arms.max(LEAST_ARM * reach.max(form.size() * size));
     let turning = if known && arms > 0.0 { (turns - off).max(0.0) / arms } else { 0.0 };
     let (value, what) = if turning > lack { (turning, "moments") } else { (lack, "forces") };
     let (outcome, limit) = match value {

@@ -27,10 +27,13 @@ const SAME_TURN: f64 = 1e-6;
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
     let mut out = Vec::new();
     let rounding = ROUNDING * forces(setting, now);
-    for ((contact, dissipated), touches) in setting.contacts.iter().zip(&now.dissipated).zip(&now.contacts) {
+    let contacts = setting.contacts.iter().zip(&now.dissipated).zip(before.contacts.iter().zip(&now.contacts));
+    for ((contact, dissipated), (earlier, touches)) in contacts {
         let Some(d) = *dissipated else { continue };
         let taken: f64 = touches.iter().map(|t| t.weight * t.friction.norm() * t.slip.norm()).sum();
-        let limit = LEFT * taken + elastic(touches) + rounding;
+        // In motion friction acts by its mean: where it turns round in the increment, along the slip for a part of it.
+        let turned = 0.5 * farthest_slip(touches) * friction_changed(earlier, touches);
+        let limit = LEFT * taken + turned + elastic(touches) + rounding;
         if d < -limit {
             let message = format!("the dissipation of friction in `{}` is negative: -{:.3e}", contact.name, -d);
             let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, limit);
@@ -60,6 +63,19 @@ fn elastic(touches: &[Touch]) -> f64 {
         t.weight * (t.friction.norm() * slip + (t.pressure.abs() + t.friction.norm()) * (t.x - t.foot).norm())
     };
     touches.iter().filter(|t| t.is_closed).map(of).sum()
+}
+
+fn farthest_slip(touches: &[Touch]) -> f64 {
+    touches.iter().filter(|t| t.is_closed).map(|t| t.slip.norm()).fold(0.0, f64::max)
+}
+
+/// How far the friction of a contact changed, of points that came and went too.
+fn friction_changed(before: &[Touch], now: &[Touch]) -> f64 {
+    let of = |t: &Touch| t.friction * t.weight;
+    if before.len() != now.len() {
+        return before.iter().chain(now).map(|t| of(t).norm()).sum();
+    }
+    before.iter().zip(now).map(|(a, b)| (of(a) - of(b)).norm()).sum()
 }
 
 fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Finding> {
@@ -92,15 +108,8 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
             driven |= moves;
         }
     }
-    // Friction that changed with the slip, of points that came and went too.
-    let slips = now.contacts.iter().flatten().filter(|t| t.is_closed).map(|t| t.slip.norm()).fold(0.0, f64::max);
-    let changed = |(a, b): (&Vec<Touch>, &Vec<Touch>)| -> f64 {
-        let rubs = |t: &Touch| t.friction * t.weight;
-        if a.len() != b.len() {
-            return a.iter().chain(b).map(|t| rubs(t).norm()).sum();
-        }
-        a.iter().zip(b).map(|(a, b)| (rubs(a) - rubs(b)).norm()).sum()
-    };
+    let slips = now.contacts.iter().map(|touches| farthest_slip(touches)).fold(0.0, f64::max);
+    let changed = |(a, b): (&Vec<Touch>, &Vec<Touch>)| friction_changed(a, b);
     off += 0.5 * slips * before.contacts.iter().zip(&now.contacts).map(changed).sum::<f64>();
     off += uncertain;
     let kept: f64 = [before, now].iter().flat_map(|s| &s.contacts).map(|list| elastic(list)).sum();

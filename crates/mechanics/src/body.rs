@@ -50,6 +50,16 @@ impl Contribution {
         }
     }
 
+    /// Multiplies the rows of some unknowns by a factor.
+    pub(crate) fn scale_rows(&mut self, is_scaled: impl Fn(u32) -> bool, factor: f64) {
+        let scaled = |(k, v): (u32, &mut f64)| *v *= if is_scaled(k) { factor } else { 1.0 };
+        (0u32..).zip(&mut self.forces).for_each(scaled);
+        for (unknowns, values) in &mut self.blocks {
+            let rows = values.chunks_mut(unknowns.len().max(1)).zip(unknowns.iter());
+            rows.for_each(|(row, k)| row.iter_mut().for_each(|v| scaled((*k, v))));
+        }
+    }
+
     /// Adds to the derivative a dense block, row by row.
     pub fn add_block(&mut self, unknowns: &[u32], values: &[f64]) {
         debug_assert_eq!(unknowns.len() * unknowns.len(), values.len());

@@ -103,6 +103,9 @@ pub struct Moved {
     pub inertia: Vec<(Vector<3>, Option<Vector<3>>)>,
     /// Energy that damping took.
     pub damped: f64,
+    /// Resultants of the forces of damping by stiffness on each body, and their moments about the origin: they balance in the mean of
+    /// an increment, not at its end. None without such damping.
+    pub damping: Vec<[Vector<3>; 2]>,
     /// Energy that contact gave as it closed or opened, and that could not be taken back: of an increment that is too long for it.
     pub by_contact: f64,
     /// Error that the method added to displacements, per time, in the norm of the mass: the root of twice an energy (Zienkiewicz

@@ -39,6 +39,19 @@ impl Solved<'_> {
         Ok([at(self.start)?, at(state)?])
     }
 
+    /// The forces of damping by stiffness within each body: none without it.
+    pub fn damping(&self, state: &SystemState) -> Result<Vec<Vec<f64>>, AssemblyError> {
+        let over_time = self.step.damping[1] / self.step.size;
+        let of = |k: usize| {
+            if over_time == 0.0 {
+                return Ok(vec![0.0; self.system.bodies[k].unknowns()]);
+            }
+            let [(_, before), (_, after)] = self.internal(k, state)?;
+            Ok(after.iter().zip(&before).map(|(b, a)| over_time * (b - a)).collect())
+        };
+        (0..self.system.bodies.len()).map(of).collect()
+    }
+
     /// The mean of a value by the weights of the forces.
     fn mean(&self, of: impl Fn(&SiteResult) -> f64, (before, after): (&SiteResult, &SiteResult)) -> f64 {
         let alpha_f = self.step.weights.alpha_f;
@@ -85,13 +98,7 @@ impl Solved<'_> {
         let [by_mass, by_stiffness] = step.damping;
         damped += by_mass / step.size * system.product_by_mass(u, u);
         if by_stiffness > 0.0 {
-            let (first, _) = system.numbering();
-            for (k, body) in system.bodies.iter().enumerate() {
-                let [(_, before), (_, after)] = self.internal(k, state)?;
-                let own = &u[first[k] as usize..first[k] as usize + body.unknowns()];
-                let change = after.iter().zip(&before).map(|(b, a)| b - a);
-                damped += by_stiffness / step.size * change.zip(own).map(|(f, u)| f * u).sum::<f64>();
-            }
+            damped += self.damping(state)?.iter().flatten().zip(u).map(|(f, u)| f * u).sum::<f64>();
         }
         Ok(damped)
     }

@@ -88,7 +88,7 @@ impl System {
     }
 
     /// Resultants of what acts on the unknowns, and their moments about the origin, by body.
-    fn resultants_of(&self, state: &SystemState, forces: &[f64]) -> Vec<[Vector<3>; 2]> {
+    pub(crate) fn resultants_of(&self, state: &SystemState, forces: &[f64]) -> Vec<[Vector<3>; 2]> {
         let (first, _) = self.numbering();
         let of = |body: usize| {
             let (own, first) = (self.bodies[body].as_ref(), first[body] as usize);

@@ -404,7 +404,7 @@ impl System {
                 None => added?,
             };
             if let Some(step) = &self.step {
-                out.scale(step.share);
+                step.scale(first, &mut out);
             }
             add(&out, first, &mut residual, &mut sizes, of_cells.as_mut().unwrap_or(&mut tangent));
         }

@@ -29,6 +29,8 @@ use signorini_geometry::{Matrix, Vector};
 use signorini_solve::general::{Analysis, Entries};
 use std::collections::BTreeMap;
 
+/// Way of a difference of forces, relative to the size of the bodies: the middle of what rounding and curvature leave.
+const DIFFERENCE: f64 = 1e-5;
 /// Gap relative to the size of the bodies with which they touch.
 const TOUCHES: f64 = 1e-9;
 
@@ -84,13 +86,14 @@ pub struct TimeStep {
     pub(crate) weights: Weights,
     /// What the mass is multiplied by in the tangent.
     factor: f64,
-    /// What forces of bodies without damping are multiplied by.
-    pub(crate) share: f64,
+    /// What forces of bodies without damping are multiplied by: of unknowns with a mass, whose equation is one of means, and of
+    /// those without, which are in equilibrium at the end.
+    shares: [f64; 2],
     /// Known forces of all unknowns of bodies.
     known: Vec<f64>,
     turning: Vec<Turning>,
     /// Of each unknown.
-    has_mass: Vec<bool>,
+    pub(crate) has_mass: Vec<bool>,
     pub(crate) velocities: Vec<f64>,
     pub(crate) accelerations: Vec<f64>,
     pub(crate) damping: [f64; 2],
@@ -171,6 +174,7 @@ impl System {
         &self,
         state: &mut SystemState,
         (after, has_mass): (f64, &[bool]),
+        [by_mass, by_stiffness]: [f64; 2],
     ) -> Result<bool, IncrementError> {
         let (_, count) = self.numbering();
         if state.velocities.is_empty() {
@@ -181,12 +185,37 @@ impl System {
         let mut forces = at.residual;
         forces.truncate(count);
         self.held_unknowns(state, after)?.into_iter().for_each(|unknown| forces[unknown] = 0.0);
-        let right: Vec<f64> = forces.iter().map(|f| -f).collect();
-        state.accelerations = self.by_mass(&self.masses, &right)?;
-        state.balancing.clone_from(&state.accelerations);
+        let damping = self.change_of_internal(state, by_stiffness)?;
+        let mut right: Vec<f64> = forces.iter().zip(&damping).map(|(f, d)| -f - d).collect();
+        self.held_unknowns(state, after)?.into_iter().for_each(|unknown| right[unknown] = 0.0);
+        state.balancing = self.by_mass(&self.masses, &right)?;
+        state.accelerations = state.balancing.iter().zip(&state.velocities).map(|(b, v)| b - by_mass * v).collect();
         let is_balanced = forces.iter().all(|f| f.abs() <= UNBALANCED * largest);
         state.forces = out_of_balance(forces, has_mass);
         Ok(is_balanced)
+    }
+
+    /// What the internal forces change in a time by the velocities of a state.
+    fn change_of_internal(&self, state: &SystemState, time: f64) -> Result<Vec<f64>, IncrementError> {
+        let (first, count) = self.numbering();
+        let mut out = vec![0.0; count];
+        let fastest = state.velocities.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        if time == 0.0 || fastest == 0.0 {
+            return Ok(out);
+        }
+        let little = DIFFERENCE * self.size() / fastest;
+        let step: Vec<f64> = state.velocities.iter().map(|v| little * v).collect();
+        for (k, body) in self.bodies.iter().enumerate() {
+            let own = first[k] as usize..first[k] as usize + body.unknowns();
+            for sign in [1.0, -1.0] {
+                let mut at = Contribution::new(body.unknowns());
+                let moved = body.advance(&state.bodies[k], &step[own.clone()], sign);
+                body.internal(&moved, Order::First, &mut at).map_err(AssemblyError::from)?;
+                let factor = 0.5 * sign * time / little;
+                out[own.clone()].iter_mut().zip(&at.forces).for_each(|(o, f)| *o += factor * f);
+            }
+        }
+        Ok(out)
     }
 
     /// Whether something touches in a state that begins to move. What it carries then is not known before it moves: the first
@@ -224,7 +253,7 @@ impl System {
         let has_mass = self.has_mass();
         let mut weights = Weights::of_radius(dynamics.spectral_radius);
         if from.forces.is_empty() {
-            let is_balanced = self.begin_to_move(from, (0.5 * (from.time + time), &has_mass))?;
+            let is_balanced = self.begin_to_move(from, (0.5 * (from.time + time), &has_mass), dynamics.damping)?;
             if !is_balanced && self.touches(from)? {
                 weights = Weights::BACKWARD;
             }
@@ -259,14 +288,14 @@ impl System {
             }
         }
         let [by_mass, by_stiffness] = dynamics.damping;
-        let mut share = 1.0;
+        let shares = [over, 1.0].map(|over| 1.0 + by_stiffness * over / size);
         if by_stiffness > 0.0 {
-            share += by_stiffness * over / size;
             for (body, (state, first)) in self.bodies.iter().zip(from.bodies.iter().zip(&first)) {
                 let mut out = Contribution::new(body.unknowns());
                 body.internal(state, Order::First, &mut out).map_err(AssemblyError::from)?;
-                let own = &mut known[*first as usize..*first as usize + body.unknowns()];
-                own.iter_mut().zip(&out.forces).for_each(|(k, f)| *k -= (share - 1.0) * f);
+                for (k, f) in (*first as usize..).zip(&out.forces) {
+                    known[k] -= (shares[usize::from(!has_mass[k])] - 1.0) * f;
+                }
             }
         }
         debug_assert_eq!(known.len(), count);
@@ -274,7 +303,7 @@ impl System {
             size,
             weights,
             factor: factor + by_mass * over / size,
-            share,
+            shares,
             known,
             turning,
             has_mass,
@@ -350,6 +379,14 @@ impl TimeStep {
     /// Whether the method conserves the energy of linear bodies: that of all elastic ones is to be conserved then.
     pub(crate) fn conserves(&self) -> bool {
         self.weights == Weights::of_radius(1.0)
+    }
+
+    /// Multiplies the internal forces of a body, of which the first unknown is told, as the method does.
+    pub(crate) fn scale(&self, first: u32, out: &mut Contribution) {
+        out.scale(self.shares[0]);
+        if self.shares[1] != self.shares[0] {
+            out.scale_rows(|k| !self.has_mass[(first + k) as usize], self.shares[1] / self.shares[0]);
+        }
     }
 
     /// Adds inertia and damping by mass to the residual at a state, and to its tangent if there is one.

@@ -351,6 +351,17 @@ fn forces(
                 reacts: false,
             });
         }
+        for (body, [force, moment]) in moved.damping.iter().enumerate() {
+            out.push(Acting {
+                name: "damping".into(),
+                body,
+                force: -force,
+                moment: Some(-moment),
+                work: Some([0.0, 0.0]),
+                drives: false,
+                reacts: false,
+            });
+        }
         let still = Vector::<3>::zeros();
         out.push(Acting {
             name: "damping".into(),

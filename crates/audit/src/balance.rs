@@ -2,7 +2,7 @@
 //! all parts of them are known.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Body, Contact, Form, Setting, State};
+use crate::state::{Body, Contact, Form, Placement, Setting, State};
 use signorini_geometry::{Point, Vector};
 
 /// Part of the forces on a body that iterations may leave, and from which the state is none.
@@ -11,6 +11,9 @@ const REFUSED: f64 = 1e-3;
 /// Least arm of the forces on a body, relative to how far from the origin they act and to its size: where all pass by it moments
 /// are rounding.
 const LEAST_ARM: f64 = 1e-2;
+
+/// Way of a point of a body relative to its size from which it turns rather than strains.
+const FAR: f64 = 1e-2;
 
 /// Checks the balance of all bodies that are not moved as prescribed.
 pub fn check(setting: &Setting, state: &State) -> Vec<Finding> {
@@ -45,6 +48,22 @@ fn curvature(setting: &Setting, state: &State, contact: &Contact, x: &Point<3>) 
     };
     let found = contact.bodies.iter().map(of).fold(0.0, f64::max);
     if found.is_finite() { found } else { 0.0 }
+}
+
+/// How far a body of small strains has turned or stretched: its moments balance about where its points were at rest.
+fn turned(setting: &Setting, state: &State, body: usize) -> f64 {
+    let (Form::Solid(solid), Placement::Points(now)) = (&setting.bodies[body].form, &state.bodies[body]) else {
+        return 0.0;
+    };
+    if solid.strain_limit.is_none() || solid.rest.len() != now.len() || now.is_empty() {
+        return 0.0;
+    }
+    let middle = |list: &[Point<3>]| list.iter().sum::<Point<3>>() / list.len() as f64;
+    let [from, to] = [middle(&solid.rest), middle(now)];
+    let apart = |(a, b): (&Point<3>, &Point<3>)| ((b - to) - (a - from)).norm();
+    let most = solid.rest.iter().zip(now).map(apart).fold(0.0, f64::max);
+    let size = solid.rest.iter().map(|x| (x - from).norm()).fold(f64::MIN_POSITIVE, f64::max);
+    most / size
 }
 
 fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
@@ -97,6 +116,10 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
     let lack = (lack - bent - rounding).max(0.0) / size;
     let turns = setting.space.axes().iter().map(|i| moment[*i].abs()).fold(0.0, f64::max);
     let arms = arms.max(LEAST_ARM * reach.max(form.size() * size));
+    // Small strains balance moments about places at rest: where they are now off by forces times displacements, `Σ u·f` of what is
+    // elastic.
+    let turned = turned(setting, state, body);
+    let off = off + turned * arms + if turned > 0.0 { 2.0 * state.stored.unwrap_or(0.0) } else { 0.0 };
     let turning = if known && arms > 0.0 { (turns - off).max(0.0) / arms } else { 0.0 };
     let (value, what) = if turning > lack { (turning, "moments") } else { (lack, "forces") };
     let (outcome, limit) = match value {
@@ -108,6 +131,8 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
     let finding = Finding::new(Check::Balance, outcome, message).measured(value, limit).on(name);
     Some(if outcome == Outcome::Fine {
         finding
+    } else if turning > lack && turned > FAR {
+        finding.remedy("small strains do not follow a rotation: use strain = \"finite\" for a body that turns")
     } else {
         finding.remedy("use more increments, or another contact method")
     })

@@ -27,13 +27,15 @@ const SAME_TURN: f64 = 1e-6;
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
     let mut out = Vec::new();
     let rounding = ROUNDING * forces(setting, now);
+    // What is lost or gained is judged below; here only what matters beside the energy that is exchanged.
+    let exchanged: f64 = now.forces.iter().filter_map(|f| f.work).map(|[work, _]| work.abs()).sum();
     let contacts = setting.contacts.iter().zip(&now.dissipated).zip(before.contacts.iter().zip(&now.contacts));
     for ((contact, dissipated), (earlier, touches)) in contacts {
         let Some(d) = *dissipated else { continue };
         let taken: f64 = touches.iter().map(|t| t.weight * t.friction.norm() * t.slip.norm()).sum();
         // In motion friction acts by its mean: where it turns round in the increment, along the slip for a part of it.
         let turned = 0.5 * farthest_slip(touches) * friction_changed(earlier, touches);
-        let limit = LEFT * taken + turned + elastic(touches) + rounding;
+        let limit = LEFT * (taken + exchanged) + turned + elastic(touches) + rounding;
         if d < -limit {
             let message = format!("the dissipation of friction in `{}` is negative: -{:.3e}", contact.name, -d);
             let finding = Finding::new(Check::Path, Outcome::Refused, message).measured(-d, limit);

@@ -15,13 +15,43 @@ const WANTED: f64 = 8.0;
 const FORCE: f64 = 0.2;
 const AREA: f64 = 1e-9;
 
+/// Cells of a rope or beam per radius of what it touches beyond which it may pass through between its points.
+const PER_RADIUS: f64 = 0.5;
+
 /// Checks the zones of all contacts of surfaces.
 pub fn check(setting: &Setting, before: Option<&State>, now: &State) -> Vec<Finding> {
     let of = |(k, contact): (usize, &Contact)| {
         let earlier = before.and_then(|s| s.contacts.get(k)).map_or(&[][..], Vec::as_slice);
         of_contact(setting, now, contact, [earlier, &now.contacts[k]])
+            .or_else(|| of_curve(setting, now, contact, &now.contacts[k]))
     };
     setting.contacts.iter().enumerate().filter_map(of).collect()
+}
+
+/// Whether a rope or beam passes by a rigid body that is smaller than its cells: it is tested at points in each of them.
+fn of_curve(setting: &Setting, state: &State, contact: &Contact, touches: &[Touch]) -> Option<Finding> {
+    let [own, other] = contact.bodies;
+    let (Form::Curve(curve), Form::Rigid(rigid)) = (&setting.bodies[own].form, &setting.bodies[other].form) else {
+        return None;
+    };
+    let length = |p: &[u32; 2]| (curve.rest[p[1] as usize] - curve.rest[p[0] as usize]).norm();
+    let cell = curve.parts * curve.pieces.iter().map(length).fold(0.0, f64::max);
+    let motion = state.bodies[other].motion();
+    let carrying = touches.iter().filter(|t| t.is_closed && t.pressure > 0.0);
+    let curvature = |t: &Touch| rigid.gap_now(&motion, &t.x).hessian.norm();
+    let (bent, x) = carrying.map(|t| (curvature(t), t.x)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let radius = 1.0 / bent + curve.radius;
+    if !bent.is_finite() || cell <= PER_RADIUS * radius {
+        return None;
+    }
+    let [name, body] = [own, other].map(|k| &setting.bodies[k].name);
+    let message = format!(
+        "`{name}` has cells of {cell:.3e} and touches `{body}`, of radius {radius:.3e} with its own, at points in each cell: \
+         what lies between is not seen"
+    );
+    let remedy = format!("use cells of {:.2e} or less there", PER_RADIUS * radius);
+    let finding = Finding::new(Check::Resolution, Outcome::Doubt, message).measured(cell / radius, PER_RADIUS);
+    Some(finding.at(x).on(&contact.name).remedy(remedy))
 }
 
 fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]: [&[Touch]; 2]) -> Option<Finding> {

@@ -4,9 +4,8 @@ use crate::dynamics::{Dynamics, Moved};
 use crate::energy_in_time::Solved;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
-use crate::system::{AssemblyError, System, SystemState};
+use crate::system::{System, SystemState};
 use crate::time_step::TimeStep;
-use signorini_geometry::Vector;
 
 /// The forces that are not balanced in a state that was found, and the state.
 type Found = (Vec<f64>, (SystemState, IncrementResult));
@@ -63,30 +62,12 @@ impl System {
         self.add_momenta(&state.balancing, 1.0, &mut at.residual[..state.balancing.len()]);
         damping.iter().flatten().zip(&mut at.residual).for_each(|(own, residual)| *residual += own);
         result.support_forces = self.support_forces(&at, &state);
-        let damping = self.damping_at_end(step, &state, damping.concat())?;
-        let (before, after, inertia) = (self.moving(start), self.moving(&state), self.inertia(&state));
+        let inertia = self.inertia(step, &state, &damping.concat())?;
+        let damping = if step.damping[1] > 0.0 { self.resultants_of(&state, &damping.concat()) } else { Vec::new() };
+        let (before, after) = (self.moving(start), self.moving(&state));
         let error = self.error_in_time(step, &state);
         result.moved = Some(Moved { before, after, inertia, damped, damping, error, by_contact });
         Ok((state, result))
-    }
-
-    /// Resultants of the forces of damping by stiffness on each body, and their moments about the origin: at the end, as the method
-    /// has them there, of what is free and has a mass, else means of the increment. None without such damping.
-    fn damping_at_end(
-        &self,
-        step: &TimeStep,
-        state: &SystemState,
-        means: Vec<f64>,
-    ) -> Result<Vec<[Vector<3>; 2]>, AssemblyError> {
-        if step.damping[1] == 0.0 {
-            return Ok(Vec::new());
-        }
-        let mut at_end: Vec<f64> = state.forces.iter().map(|f| -f).collect();
-        self.add_momenta(&state.balancing, -1.0, &mut at_end);
-        let mut is_mean: Vec<bool> = step.has_mass.iter().map(|has| !has).collect();
-        self.held_unknowns(state, state.time)?.into_iter().for_each(|unknown| is_mean[unknown] = true);
-        let of = |k: usize| if is_mean[k] { means[k] } else { at_end[k] };
-        Ok(self.resultants_of(state, &(0..means.len()).map(of).collect::<Vec<_>>()))
     }
 
     /// By how much Newmark's displacement `½ h² a₀ + β h² (a₁ - a₀)` differs from the series `½ h² a + ⅙ h³ a'`, per time.

@@ -2,7 +2,8 @@
 
 use crate::dynamics::Moving;
 use crate::resultants::{dot, resultant};
-use crate::system::{System, SystemState};
+use crate::system::{AssemblyError, System, SystemState};
+use crate::time_step::TimeStep;
 use signorini_geometry::Vector;
 
 impl System {
@@ -77,14 +78,23 @@ impl System {
         modes[..3].iter().map(of).fold(0.0, f64::max)
     }
 
-    /// The resultants of inertia at the end of an increment, by body.
-    pub(crate) fn inertia(&self, state: &SystemState) -> Vec<(Vector<3>, Option<Vector<3>>)> {
-        let (_, count) = self.numbering();
-        let mut forces = vec![0.0; count];
-        self.add_momenta(&state.balancing, -1.0, &mut forces);
+    /// Resultants of the forces of inertia on the bodies at the end of an increment, and their moments about the origin; none of
+    /// bodies that turn. They are what the other forces on what is free lack, with those of `damping` by stiffness, and `-M a` of
+    /// what is held: accelerations are differences over the square of a time that may be short.
+    pub(crate) fn inertia(
+        &self,
+        step: &TimeStep,
+        state: &SystemState,
+        damping: &[f64],
+    ) -> Result<Vec<(Vector<3>, Option<Vector<3>>)>, AssemblyError> {
+        let mut of_held = vec![0.0; state.forces.len()];
+        self.add_momenta(&state.balancing, -1.0, &mut of_held);
+        let mut forces: Vec<f64> = state.forces.iter().zip(damping).map(|(f, d)| f + d).collect();
+        forces.iter_mut().zip(&step.has_mass).filter(|(_, has)| !**has).for_each(|(f, _)| *f = 0.0);
+        self.held_unknowns(state, state.time)?.into_iter().for_each(|unknown| forces[unknown] = of_held[unknown]);
         let turns = |body: usize| self.masses.get(body).and_then(Option::as_ref).is_some_and(|m| !m.spins.is_empty());
         let all = self.resultants_of(state, &forces).into_iter().enumerate();
-        all.map(|(body, [force, moment])| (force, (!turns(body)).then_some(moment))).collect()
+        Ok(all.map(|(body, [force, moment])| (force, (!turns(body)).then_some(moment))).collect())
     }
 
     /// Resultants of what acts on the unknowns, and their moments about the origin, by body.

@@ -67,7 +67,7 @@ pub struct SystemState {
     /// What equilibrium lacks where there is a mass.
     pub(crate) forces: Vec<f64>,
     /// Energy that is still to be taken from the velocities of each body.
-    pub(crate) owed: Vec<f64>,
+    pub owed: Vec<f64>,
 }
 
 impl SystemState {

@@ -83,7 +83,8 @@ impl SystemAudit {
             bodies,
             contacts,
             forces,
-            stored: Some(result.energy),
+            // Less what the method still owes of an increment that it could not correct at once.
+            stored: Some(result.energy - state.owed.iter().sum::<f64>()),
             dissipated: dissipated.collect(),
             dissipated_in_bodies: result.dissipated_in_bodies.iter().sum(),
         };

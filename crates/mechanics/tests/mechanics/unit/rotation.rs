@@ -3,7 +3,7 @@
 use crate::common::{ball, v};
 use nalgebra::UnitQuaternion;
 use signorini_geometry::{Matrix, Vector};
-use signorini_mechanics::body::Body;
+use signorini_mechanics::body::{Body, Kinematics};
 use signorini_mechanics::rigid_body::{Motion, Pose};
 use signorini_mechanics::testing::{between, of_spin, of_spin_change, spin, turn, unwrapped, whole_turns};
 use std::f64::consts::TAU;

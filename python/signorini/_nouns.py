@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'ae98c37135c5a3cb'
+SCHEMA = '91068488923d5dd4'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -1025,8 +1025,8 @@ class FreeMotion(Noun):
 
     angular_velocity: Angular velocity in radians per time at the start, along each axis or one value in the
         plane; none if left out.
-    center: Reference point for forces and rotations, lengths; the centre of the shape if left out. With a mass it
-        is the centre of mass.
+    center: Reference point for forces and rotations, lengths; if left out the centre of the volume, or of the
+        shape where its volume is not known. With a mass it is the centre of mass.
     density: Mass per volume, from which mass, centre of mass and inertia of a closed shape follow; no mass if
         left out.
     inertia: Moments of inertia about the centre: one value of a ball or in the plane, or `[Jxx, Jyy, Jzz]` about
@@ -2211,7 +2211,8 @@ class Prescribed(Noun):
     """Prescribed translation and rotation.
 
     displacement: Displacement along each axis, lengths, as expressions of t.
-    rotation: Rotation vector in radians, as expressions of t.
+    rotation: Rotation vector in radians about the centre of the shape, which is the origin of surfaces from files
+        and of level sets, as expressions of t.
     """
 
     _key = 'prescribed'

@@ -78,8 +78,10 @@ pub struct RigidBody {
 pub struct Pose {
     pub centre: Point<3>,
     pub rotation: UnitQuaternion<f64>,
-    /// The rotation vector since the start, whole turns included.
+    /// The rotation vector since the start, with the whole turns that bring it nearest to the one before.
     pub turn: Vector<3>,
+    /// The rotation vectors of all motions since the start, summed: whole turns included, about whatever axes.
+    pub turned: Vector<3>,
 }
 
 impl Pose {
@@ -89,21 +91,23 @@ impl Pose {
         Pose {
             centre: Point::<3>::new(c[0], c[1], c[2]),
             rotation: UnitQuaternion::new_normalize(Quaternion::new(c[3], c[4], c[5], c[6])),
-            turn: Vector::<3>::new(turn[0], turn[1], turn[2]),
+            turn: Vector::<3>::from_column_slice(&turn[..3]),
+            turned: Vector::<3>::from_column_slice(&turn[turn.len() - 3..]),
         }
     }
 
     pub(crate) fn state(&self) -> BodyState {
         let q = self.rotation.quaternion();
         let configuration = vec![self.centre[0], self.centre[1], self.centre[2], q.w, q.i, q.j, q.k];
-        BodyState { configuration, internal: self.turn.as_slice().to_vec() }
+        BodyState { configuration, internal: [self.turn.as_slice(), self.turned.as_slice()].concat() }
     }
 
     /// The pose after a displacement of the centre and a turn.
     pub(crate) fn moved(&self, displacement: &Vector<3>, turn: &Vector<3>) -> Pose {
         let rotation = UnitQuaternion::from_scaled_axis(*turn) * self.rotation;
+        let turned = self.turned + turn;
         let turn = rotation::unwrapped(&rotation, &(self.turn + turn));
-        Pose { centre: self.centre + displacement, rotation, turn }
+        Pose { centre: self.centre + displacement, rotation, turn, turned }
     }
 
     /// The rotation as a matrix.
@@ -177,7 +181,8 @@ impl Body for RigidBody {
     }
 
     fn start(&self) -> BodyState {
-        Pose { centre: self.centre, rotation: UnitQuaternion::identity(), turn: Vector::<3>::zeros() }.state()
+        let none = Vector::<3>::zeros();
+        Pose { centre: self.centre, rotation: UnitQuaternion::identity(), turn: none, turned: none }.state()
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
@@ -349,13 +354,14 @@ impl Kinematics for RigidBody {
             let motion = motion(time);
             let rotation = Rotation3::from_matrix_unchecked(motion.rotation);
             let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
-            *state = Pose { centre: motion.point(&self.centre), rotation, turn: motion.turn }.state();
+            let (centre, turn) = (motion.point(&self.centre), motion.turn);
+            *state = Pose { centre, rotation, turn, turned: turn }.state();
         }
     }
 
     fn between(&self, from: &BodyState, to: &BodyState, share: f64) -> BodyState {
         let [from, to] = [from, to].map(Pose::of);
-        let turn = rotation::between(&from.turn, &to.turn);
+        let turn = rotation::unwrapped(&(to.rotation * from.rotation.inverse()), &(to.turned - from.turned));
         from.moved(&((to.centre - from.centre) * share), &(turn * share)).state()
     }
 

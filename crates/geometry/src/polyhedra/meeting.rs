@@ -1,6 +1,6 @@
 //! Where two polyhedra meet: pairs of features with gap, normal, and how both change.
 
-use super::separation::{Turning, duals, separation};
+use super::separation::{CUTS, Turning, duals, separation};
 use super::{Edge, Feature, Features};
 use crate::straight::{along as on_segment, segments};
 use crate::{Aabb, Matrix, Point, Vector};
@@ -211,15 +211,61 @@ pub fn meetings(bodies: [&Placed<'_>; 2], reach: f64, snap: f64) -> Vec<Meeting>
                 Feature::Corner(c) if gap.abs() <= snap && !other.corners()[c].hollow.is_empty() => {
                     other.corners()[c].hollow.iter().map(|f| Feature::Facet(*f)).collect()
                 }
+                on if gap.abs() <= snap => vec![pushed_out(bodies, (k, number), on, (&x, snap)).unwrap_or(on)],
                 on => vec![on],
             };
-            let own = Feature::Corner(number);
-            pairs.extend(places.into_iter().map(|on| if k == 0 { [own, on] } else { [on, own] }));
+            pairs.extend(places.into_iter().map(|on| of_corner((k, number), on)));
         }
     }
     let mut out: Vec<Meeting> = pairs.into_iter().filter_map(|on| meeting(bodies, on, snap)).collect();
     out.extend(crossings(bodies, reach, snap));
     out
+}
+
+/// A corner of one of the bodies, and what of the other one it meets.
+fn of_corner((k, corner): (usize, usize), on: Feature) -> [Feature; 2] {
+    let own = Feature::Corner(corner);
+    if k == 0 { [own, on] } else { [on, own] }
+}
+
+/// A facet over a corner that lies on the other body, at a place beside which both bodies overlap: faces of both in one plane, or
+/// edges on each other, have its nearest place on a side through which it did not come. Of the facets that the body of the corner
+/// does not cut there, the nearest; none where the bodies do not overlap.
+fn pushed_out(
+    bodies: [&Placed<'_>; 2],
+    (k, number): (usize, usize),
+    on: Feature,
+    (x, snap): (&Point<3>, f64),
+) -> Option<Feature> {
+    let other = bodies[1 - k].features;
+    // The edges at the corner, as the other body sees them.
+    let seen = bodies[1 - k].rotation.transpose() * bodies[k].rotation;
+    let along: Vec<Vector<3>> = bodies[k].features.corners()[number].along.iter().map(|d| seen * d).collect();
+    let is_cut = |f: usize| along.iter().any(|d| d.dot(&other.facets()[f].normal) < -CUTS);
+    let overlaps = match on {
+        Feature::Facet(f) => is_cut(f),
+        _ => meeting(bodies, of_corner((k, number), on), snap).is_none(),
+    };
+    let height = |f: usize| {
+        let facet = &other.facets()[f];
+        facet.normal.dot(&(x - facet.point))
+    };
+    // Whether the foot on the plane of a facet is on the facet.
+    let is_on = |f: usize| {
+        let foot = x - other.facets()[f].normal * height(f);
+        match other.nearest(&foot, snap) {
+            Some((_, gap)) if gap.abs() > snap => false,
+            Some((Feature::Facet(own), _)) => own == f,
+            Some((Feature::Edge(e), _)) => other.edges()[e].facets.contains(&f),
+            Some((Feature::Corner(c), _)) => other.corners()[c].facets.contains(&f),
+            None => false,
+        }
+    };
+    if !overlaps {
+        return None;
+    }
+    let facets = (0..other.facets().len()).filter(|f| height(*f) < -snap && !is_cut(*f) && is_on(*f));
+    facets.max_by(|a, b| height(*a).total_cmp(&height(*b))).map(Feature::Facet)
 }
 
 /// The edges that cross within both.

@@ -10,7 +10,7 @@ use crate::Vector;
 /// Sines of angles to planes that are equal but for rounding.
 const SAME: f64 = 1e-9;
 /// Sine by which the plane may cut into a cone: of bodies that overlap by rounding.
-const CUTS: f64 = 1e-6;
+pub(super) const CUTS: f64 = 1e-6;
 
 /// How the normal of a meeting turns.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -128,3 +128,22 @@ fn what_is_apart_has_positive_gaps() {
         assert!((least - distance).abs() < 1e-12, "{k}: {least} {distance}");
     }
 }
+
+/// Two equal boxes side by side, with sides in one plane: what leans into the other overlaps it by its upper corners, which lie on
+/// the sides of that one; upright they overlap by corners that lie on its edges. The depth is that of the facet they came through.
+#[test]
+fn bodies_with_sides_in_one_plane_overlap_by_the_facet_they_came_through() {
+    let shape = block([1.5, 1.0, 3.0]);
+    let (lean, way) = (0.2f64, 3.5);
+    let reaches = 1.5 * lean.cos() + 3.0 * lean.sin();
+    for (lean, apart, depth) in [(lean, way, reaches + 1.5 - way), (0.0, 2.999, 1e-3)] {
+        let bodies = [placed(&shape, [0.0; 3], [0.0, lean, 0.0]), placed(&shape, [apart, 0.0, 0.0], [0.0; 3])];
+        assert!(depth > 0.0);
+        for order in [[0, 1], [1, 0]] {
+            let found = meetings(order.map(|k| &bodies[k]), 0.0, 1e-9);
+            let deepest = found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).unwrap();
+            assert!((deepest.gap + depth).abs() < 1e-12, "{deepest:?}");
+            assert!(deepest.normal.x.abs() > 1.0 - 1e-12);
+        }
+    }
+}

@@ -14,6 +14,8 @@ pub const OF_HEXAHEDRON: [[usize; 4]; 6] =
 
 /// Cubes along the longest side of the box in which a rigid body is drawn: each a few pixels wide.
 pub const CUBES: usize = 48;
+/// Those in the files of free bodies, which are written in each increment.
+pub const CUBES_IN_FILES: usize = 24;
 /// Cubes along the sides of the blocks with which the search for a surface begins, a power of two.
 const BLOCK: usize = 8;
 
@@ -44,14 +46,15 @@ pub fn level(tetrahedra: impl Iterator<Item = [u32; 4]>, value: impl Fn(u32) -> 
 
 /// The surface of a rigid body within a box: points, their outward normals, and triangles.
 ///
-/// `gap` is the distance to the surface, negative inside: blocks of cubes that are farther from it than their corners
+/// `gap` is the distance to the surface, negative inside; the longest side has `cubes` cubes. Blocks of cubes that are farther from it than their corners
 /// reach are left out.
 pub fn surface(
     gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync),
     [low, high]: [Vector<3>; 2],
+    cubes: usize,
 ) -> (Vec<Vector<3>>, Vec<Vector<3>>, Vec<[u32; 3]>) {
     let size = high - low;
-    let cube = size.max() / CUBES as f64;
+    let cube = size.max() / cubes as f64;
     let count: [usize; 3] = std::array::from_fn(|k| ((size[k] / cube).ceil() as usize).max(1));
     let side: Vector<3> = Vector::<3>::from_fn(|k, _| size[k] / count[k] as f64);
     let at = |i: [f64; 3]| Vector::<3>::from_fn(|k, _| low[k] + side[k] * i[k]);

@@ -1,9 +1,10 @@
-//! Rigid bodies as files for ParaView: their surface, in the plane their edge.
+//! Rigid bodies as files for ParaView: their surface, in the plane their edge; there is one for each of them in each increment, so
+//! that they are compressed, with points of single precision.
 
 use super::OutputError;
 use super::level::region;
 use super::page::ROUNDING;
-use super::vtk::to_bytes;
+use super::vtk::to_compressed_bytes;
 use signorini_contact::GapJet;
 use signorini_geometry::Vector;
 use vtkio::model::{DataSet, PolyDataPiece, VertexNumbers};
@@ -19,7 +20,7 @@ pub fn in_plane(gap: Gap<'_>, corners: [Vector<3>; 2]) -> Result<Vec<u8>, Output
     let (points, lines) = joined(&region(gap, corners).1, ROUNDING * (corners[1] - corners[0]).max());
     let (mut piece, topology) = piece(&points, &lines);
     piece.lines = topology;
-    to_bytes("rigid", DataSet::inline(piece))
+    to_compressed_bytes("rigid", DataSet::inline(piece))
 }
 
 /// A VTP of the surface of a rigid body, from its triangles.
@@ -29,7 +30,7 @@ pub fn in_plane(gap: Gap<'_>, corners: [Vector<3>; 2]) -> Result<Vec<u8>, Output
 pub fn in_space(points: &[Vector<3>], triangles: &[[u32; 3]]) -> Result<Vec<u8>, OutputError> {
     let (mut piece, topology) = piece(points, triangles);
     piece.polys = topology;
-    to_bytes("rigid", DataSet::inline(piece))
+    to_compressed_bytes("rigid", DataSet::inline(piece))
 }
 
 /// Points, and what cells there are between them.
@@ -41,7 +42,7 @@ fn piece(points: &[Vector<3>], cells: &[impl AsRef<[u32]>]) -> (PolyDataPiece, O
             Some(*at)
         })
         .collect();
-    let points = points.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<f64>>().into();
+    let points = points.iter().flat_map(|x| [x.x, x.y, x.z].map(|v| v as f32)).collect::<Vec<f32>>().into();
     (PolyDataPiece { points, ..PolyDataPiece::default() }, Some(VertexNumbers::XML { connectivity, offsets }))
 }
 

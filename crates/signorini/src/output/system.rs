@@ -60,8 +60,8 @@ pub struct RigidShown {
 
 impl RigidShown {
     /// Its surface within a box: points, the normals at the corners of each triangle, and triangles. Of a body of flat faces that lies in the
-    /// box, or is free, its own triangles.
-    pub fn surface(&self, room: [Vector<3>; 2]) -> (Vec<Vector<3>>, Vec<[Vector<3>; 3]>, Vec<[u32; 3]>) {
+    /// box, or is free, its own triangles; of others those of `cubes` cubes along the box.
+    pub fn surface(&self, room: [Vector<3>; 2], cubes: usize) -> (Vec<Vector<3>>, Vec<[Vector<3>; 3]>, Vec<[u32; 3]>) {
         let [low, high] = self.room(room);
         let lies_within = |x: &Vector<3>| (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i]);
         if let Some((points, triangles)) = &self.mesh
@@ -73,7 +73,7 @@ impl RigidShown {
             };
             return (points.clone(), triangles.iter().map(normal).collect(), triangles.clone());
         }
-        let (points, normals, triangles) = surface(self.gap.as_ref(), [low, high]);
+        let (points, normals, triangles) = surface(self.gap.as_ref(), [low, high], cubes);
         let normals = triangles.iter().map(|t| t.map(|k| normals[k as usize])).collect();
         (points, normals, triangles)
     }

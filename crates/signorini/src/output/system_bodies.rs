@@ -1,7 +1,7 @@
 //! Bodies of a system as they are drawn: tubes about ropes and beams, surfaces of solids, rigid bodies.
 
 use super::colours::{FREE, RIGID};
-use super::level::OF_HEXAHEDRON;
+use super::level::{CUBES, OF_HEXAHEDRON};
 use super::page::Scale;
 use super::render::{Body, Paint};
 use super::system::{CurveShown, RigidShown, SystemShown, moved};
@@ -113,7 +113,7 @@ pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
 pub fn rigid(shown: &SystemShown, room: [Vector<3>; 2]) -> Vec<Body> {
     let veil = if shown.is_of_solids() { THIN_VEIL } else { VEIL };
     let sheet = |body: &RigidShown| {
-        let (points, normals, triangles) = body.surface(room);
+        let (points, normals, triangles) = body.surface(room, CUBES);
         let opacity = if body.is_free { 1.0 } else { veil };
         Body { points, triangles, normals, paint: Paint::Plain(RIGID), opacity }
     };

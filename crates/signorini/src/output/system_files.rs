@@ -2,6 +2,7 @@
 
 use super::OutputError;
 use super::body_fields::STRESS;
+use super::level::{CUBES, CUBES_IN_FILES};
 use super::rigid;
 use super::system::{RigidShown, SystemShown};
 use super::vtk::with_units;
@@ -164,7 +165,7 @@ pub fn rigid_files(plan: &MechanicsPlan, shown: &SystemShown) -> Result<Vec<(Str
     }
     let file = |body: &RigidShown| {
         let file = if in_space {
-            let (points, _, triangles) = body.surface(room);
+            let (points, _, triangles) = body.surface(room, if body.is_free { CUBES_IN_FILES } else { CUBES });
             rigid::in_space(&points, &triangles)
         } else {
             rigid::in_plane(body.gap.as_ref(), room)

@@ -8,6 +8,10 @@ use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, PolyDataPiece, UnstructuredGridPiece, Version,
     VertexNumbers, Vtk,
 };
+use vtkio::xml::Compressor;
+
+/// Level of compression, of nine.
+const LEVEL: u32 = 6;
 
 /// A data set as an XML file, with the units of its fields where the case states any: as VTK's own `UNITS_LABEL`.
 pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Result<Vec<u8>, OutputError> {
@@ -45,6 +49,17 @@ pub fn to_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
         Vtk { version: Version::Auto, title: title.into(), byte_order: ByteOrder::LittleEndian, data, file_path: None };
     let mut bytes = Vec::new();
     vtk.write_xml(&mut bytes).map_err(|e| OutputError::Picture(format!("VTK: {e}")))?;
+    Ok(bytes)
+}
+
+/// A data set as an XML file with its arrays compressed by zlib, which ParaView and pyvista read.
+pub fn to_compressed_bytes(title: &str, data: DataSet) -> Result<Vec<u8>, OutputError> {
+    let vtk =
+        Vtk { version: Version::Auto, title: title.into(), byte_order: ByteOrder::LittleEndian, data, file_path: None };
+    let fail = |e: &dyn std::fmt::Display| OutputError::Picture(format!("VTK: {e}"));
+    let file = vtk.try_into_xml_format(Compressor::ZLib, LEVEL).map_err(|e| fail(&e))?;
+    let mut bytes = Vec::new();
+    file.write(&mut bytes).map_err(|e| fail(&e))?;
     Ok(bytes)
 }
 

@@ -16,7 +16,7 @@ pub struct Surface {
 
 impl Surface {
     pub fn new(gap: &(dyn Fn(&Vector<3>) -> GapJet<3> + Sync), corners: [Vector<3>; 2]) -> Self {
-        let (points, normals, triangles) = level::surface(gap, corners);
+        let (points, normals, triangles) = level::surface(gap, corners, level::CUBES);
         Surface { points, normals, triangles }
     }
 

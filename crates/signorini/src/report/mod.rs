@@ -282,8 +282,12 @@ pub struct MotionReport {
 pub struct Pose {
     /// Displacement of the centre since the start.
     pub displacement: [f64; 3],
-    /// Rotation vector in radians since the start, full turns included.
+    /// Rotation vector in radians since the start, which tells how the body lies; full turns included while it turns about one axis.
     pub rotation: [f64; 3],
+    /// How far it has turned about the axes of space, in radians: the rotation vectors of all increments, summed; full turns
+    /// included, about whatever axes.
+    #[serde(default)]
+    pub turned: [f64; 3],
 }
 
 /// Values at a point of `output.probes`.

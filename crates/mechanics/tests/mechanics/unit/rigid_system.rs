@@ -1,6 +1,8 @@
 //! Rigid bodies at rest and on their way there, against statics.
 
 use crate::common::{at_rest, ball, plane, rigid, v};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SupportedConeT};
 use signorini_contact::Coulomb;
 use signorini_geometry::Vector;
 use signorini_geometry::rigid_shape::{Cone, GapJet, RigidShape, Torus};
@@ -203,4 +205,125 @@ fn what_flies_or_rolls_away_is_free() {
     let pushed = system(&[(v(0.0, 1.0, 0.0), 1.0)], true, vec![floor()], &|_| v(0.1, -1.0, 0.0), 0.3);
     let error = solve(pushed).unwrap_err();
     assert!(matches!(&error, IncrementError::Free { motion, .. } if motion.contains("along (1.000, 0")), "{error}");
+}
+
+/// Discs or balls of radius one and weight one on a floor, piled densely: places, and who touches whom with the normal towards the
+/// first; the floor is none.
+type Touches = Vec<(usize, Option<usize>, Vector<3>)>;
+
+fn pile(levels: usize, in_space: bool) -> (Vec<(Vector<3>, f64)>, Touches) {
+    let third = if in_space { v(1.0, (8.0f64 / 3.0).sqrt(), 1.0 / 3.0f64.sqrt()) } else { v(1.0, 3.0f64.sqrt(), 0.0) };
+    let second = v(1.0, 0.0, 3.0f64.sqrt());
+    let mut places = Vec::new();
+    for k in 0..levels {
+        for j in 0..if in_space { levels - k } else { 1 } {
+            let first = |i: usize| v(2.0 * i as f64, 1.0, 0.0);
+            places.extend((0..levels - k - j).map(|i| first(i) + second * j as f64 + third * k as f64));
+        }
+    }
+    let mut touches = Touches::new();
+    for (a, x) in places.iter().enumerate() {
+        if x[1] < 1.0 + 1e-9 {
+            touches.push((a, None, v(0.0, 1.0, 0.0)));
+        }
+        let others = places.iter().enumerate().skip(a + 1).filter(|(_, y)| (x - *y).norm() < 2.0 + 1e-9);
+        touches.extend(others.map(|(b, y)| (a, Some(b), (x - y) * 0.5)));
+    }
+    (places.into_iter().map(|x| (x, 1.0)).collect(), touches)
+}
+
+/// The least force by which friction would have to exceed its cones for a balance with the weights: a second-order cone program.
+fn excess((bodies, touches): (usize, &Touches), weight: &Vector<3>, mu: f64) -> f64 {
+    let count = 3 * touches.len() + 1;
+    let (mut rows, mut right, mut cones) = (Vec::new(), Vec::new(), Vec::new());
+    // Of each body three forces and three moments.
+    let mut balance = vec![Vec::new(); 6 * bodies];
+    for (k, (a, b, normal)) in touches.iter().enumerate() {
+        let across = normal.cross(&if normal.x.abs() < 0.9 { v(1.0, 0.0, 0.0) } else { v(0.0, 0.0, 1.0) }).normalize();
+        for (i, axis) in [*normal, across, normal.cross(&across)].iter().enumerate() {
+            for (body, sign) in [(Some(*a), 1.0), (*b, -1.0)] {
+                let Some(body) = body else { continue };
+                // The arm is against the normal on the first, along it on the second; so is the force.
+                let moment = -normal.cross(axis);
+                (0..3).for_each(|c| balance[6 * body + c].push((3 * k + i, sign * axis[c])));
+                (0..3).for_each(|c| balance[6 * body + 3 + c].push((3 * k + i, moment[c])));
+            }
+        }
+    }
+    for (number, row) in balance.into_iter().enumerate() {
+        rows.push(row);
+        right.push(if number % 6 < 3 { -weight[number % 6] } else { 0.0 });
+    }
+    cones.push(SupportedConeT::ZeroConeT(6 * bodies));
+    let pushes = (0..touches.len()).map(|k| 3 * k).chain([count - 1]);
+    pushes.for_each(|column| rows.push(vec![(column, -1.0)]));
+    cones.push(SupportedConeT::NonnegativeConeT(touches.len() + 1));
+    for k in 0..touches.len() {
+        rows.push(vec![(3 * k, -mu), (count - 1, -1.0)]);
+        rows.extend([1, 2].map(|i| vec![(3 * k + i, -1.0)]));
+        cones.push(SupportedConeT::SecondOrderConeT(3));
+    }
+    right.resize(rows.len(), 0.0);
+    let entries = || rows.iter().enumerate().flat_map(|(i, row)| row.iter().map(move |(j, value)| (i, *j, *value)));
+    let matrix = CscMatrix::new_from_triplets(
+        rows.len(),
+        count,
+        entries().map(|e| e.0).collect(),
+        entries().map(|e| e.1).collect(),
+        entries().map(|e| e.2).collect(),
+    );
+    let mut cost = vec![0.0; count];
+    cost[count - 1] = 1.0;
+    let tight = 1e-10;
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: tight,
+        tol_gap_rel: tight,
+        tol_feas: tight,
+        max_threads: 1,
+        ..DefaultSettings::default()
+    };
+    let none = CscMatrix::zeros((count, count));
+    let mut solver = DefaultSolver::new(&none, &cost, &matrix, &right, &cones, settings).unwrap();
+    solver.solve();
+    solver.solution.obj_val
+}
+
+/// Piles stay from the coefficient of friction on with which forces within the cones balance the weights, as a cone program tells it,
+/// and not below: discs, balls, and both on a slope.
+#[test]
+fn piles_stay_where_admissible_forces_hold_them() {
+    for (levels, in_space, weight) in [
+        (4, false, v(0.0, -1.0, 0.0)),
+        (4, false, v(0.1, -1.0, 0.0)),
+        (3, true, v(0.0, -1.0, 0.0)),
+        (3, true, v(0.05, -1.0, -0.08)),
+    ] {
+        let (bodies, touches) = pile(levels, in_space);
+        let (mut low, mut high) = (0.1, 2.0);
+        while high - low > 1e-7 {
+            let middle = 0.5 * (low + high);
+            *(if excess((bodies.len(), &touches), &weight, middle) > 1e-8 { &mut low } else { &mut high }) = middle;
+        }
+        let stays = |mu: f64| {
+            let mut system = system(&bodies, !in_space, vec![floor()], &|_| weight, mu);
+            let start = system.start();
+            // What moves is interrupted in its first step.
+            match system.solve(&start, 1.0, &mut |_, _| false) {
+                Ok((state, found)) => {
+                    assert!(found.imbalance < 1e-9, "{}", found.imbalance);
+                    (0..bodies.len()).for_each(|k| assert_eq!(centre(&state, k), bodies[k].0));
+                    true
+                }
+                Err(IncrementError::Interrupted) => false,
+                Err(other) => panic!("{other}"),
+            }
+        };
+        for share in [1.000_003, 1.0001, 1.01, 2.0] {
+            assert!(stays(share * high), "{levels} {in_space} {weight}: {share} of {high}");
+        }
+        for share in [0.999_99, 0.999, 0.9] {
+            assert!(!stays(share * high), "{levels} {in_space} {weight}: {share} of {high}");
+        }
+    }
 }

@@ -109,7 +109,10 @@ pub fn step_report(
         let Kind::Rigid { centre, is_free: true, .. } = kind else { return None };
         let pose = rigid_body::Pose::of(state);
         let displacement = vector(&(pose.centre - centre));
-        Some((body.name().to_string(), Pose { displacement, rotation: vector(&pose.turn) }))
+        Some((
+            body.name().to_string(),
+            Pose { displacement, rotation: vector(&pose.turn), turned: vector(&pose.turned) },
+        ))
     });
     let means = system.bodies.iter().zip(&state.bodies).filter_map(|(body, state)| {
         let own = body.means(state)?;
@@ -386,7 +389,7 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
     }
     for (name, pose) in &step.free_bodies {
         let moved = told_vector(&pose.displacement[..space], None, unit(|u| &u.length));
-        let turned = Vector::<3>::from(pose.rotation).norm();
+        let turned = Vector::<3>::from(pose.turned).norm();
         let turned =
             if turned > 0.0 { format!(" and rotated by {}", told(turned, None, "rad")) } else { String::new() };
         list.push(format!("`{name}` moved by {moved}{turned}"));

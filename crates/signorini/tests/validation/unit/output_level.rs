@@ -7,7 +7,7 @@ use signorini_geometry::Vector;
 #[test]
 fn the_surface_of_a_ball_lies_on_it_and_has_its_area() {
     let gap = |x: &Vector<3>| GapJet::ball(x, &Vector::<3>::zeros(), 0.8);
-    let (points, normals, triangles) = surface(&gap, [Vector::<3>::repeat(-1.0), Vector::<3>::repeat(1.0)]);
+    let (points, normals, triangles) = surface(&gap, [Vector::<3>::repeat(-1.0), Vector::<3>::repeat(1.0)], CUBES);
     assert!(points.iter().zip(&normals).all(|(x, n)| (x - n * 0.8).norm() < 1e-12));
     let x = |k: u32| points[k as usize];
     let area: f64 = triangles.iter().map(|t| 0.5 * (x(t[1]) - x(t[0])).cross(&(x(t[2]) - x(t[0]))).norm()).sum();
@@ -34,7 +34,8 @@ fn an_open_surface_ends_at_its_rim() {
         let d = (x - foot).norm();
         GapJet::flat(if x.z < 0.0 { -d } else { d }, Vector::<3>::z())
     };
-    let (points, _, triangles) = surface(&gap, [Vector::<3>::new(-1.0, -1.0, -0.9), Vector::<3>::new(1.0, 1.0, 1.0)]);
+    let (points, _, triangles) =
+        surface(&gap, [Vector::<3>::new(-1.0, -1.0, -0.9), Vector::<3>::new(1.0, 1.0, 1.0)], CUBES);
     assert!(!triangles.is_empty());
     assert!(triangles.iter().flatten().all(|&k| points[k as usize].xy().norm() < 0.5 + 2.0 / CUBES as f64));
 }

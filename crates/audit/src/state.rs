@@ -203,6 +203,8 @@ pub struct State {
     pub dissipated: Vec<Option<f64>>,
     /// Energy that bodies took in the increment by plastic strain, as told.
     pub dissipated_in_bodies: f64,
+    /// Whether bodies move with inertia: forces acted by their means in the increment.
+    pub in_motion: bool,
 }
 
 /// Where a body is.

@@ -5,7 +5,7 @@ use crate::bounds::ForceBounds;
 use crate::finding::{Check, Finding, Outcome};
 use crate::groups::{Group, carrying, groups, touching};
 use crate::place::Place;
-use crate::state::{Setting, State};
+use crate::state::{Form, Setting, State};
 use crate::statics::Statics;
 
 /// Places of a group beyond which equations are counted only, whether they are the same or not: to tell takes the cube of it.
@@ -64,8 +64,22 @@ fn of_group(setting: &Setting, state: &State, group: &Group, bounds: &[ForceBoun
         message += &outside;
     }
     let finding = finding(Outcome::Doubt, message).on(&setting.bodies[group.members[0]].name);
-    Some(finding.remedy("the motion is reliable; the forces are one of many possible sets"))
+    // What found its place by a motion without inertia could have found another one.
+    let has_moved = |body: &usize| match &setting.bodies[*body].form {
+        Form::Rigid(rigid) => {
+            (state.bodies[*body].motion().point(&rigid.centre) - rigid.centre).norm() > FAR * rigid.size
+        }
+        _ => false,
+    };
+    Some(finding.remedy(if group.members.iter().any(has_moved) {
+        "the forces are one of many possible sets; where bodies that moved come to rest depends on the way"
+    } else {
+        "the motion is reliable; the forces are one of many possible sets"
+    }))
 }
+
+/// Way of a body since the start, relative to its size, that is a motion.
+const FAR: f64 = 1e-2;
 
 /// The forces at places of a group, and the equations for them.
 struct Count {

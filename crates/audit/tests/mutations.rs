@@ -91,6 +91,7 @@ fn disc() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(0.0)],
         dissipated_in_bodies: 0.0,
+        in_motion: false,
     };
     Case { setting, before: State { time: 1.0, ..now.clone() }, now, stability: Stability::NotTested }
 }
@@ -137,6 +138,7 @@ fn block() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(MU * way)],
         dissipated_in_bodies: 0.0,
+        in_motion: false,
     };
     let (before, now) = (state(0.0, 1.0), state(way, 2.0));
     let body = Body { name: "block".into(), form: Form::Solid(solid.clone()), rounding: 0.0 };
@@ -205,6 +207,7 @@ fn rope() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(dissipated)],
         dissipated_in_bodies: 0.0,
+        in_motion: false,
     };
     let drum = Cylinder { point: Point::<3>::zeros(), axis: Vector::<3>::z(), radius: 1.0 };
     let setting = Setting {

@@ -30,6 +30,17 @@ const MOST_ITERATIONS: usize = 60;
 /// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
 const GRAIN: f64 = 1e-12;
 
+/// How far steps of Newton's method are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// As suits the bodies.
+    ByBodies,
+    /// Whole, as they come.
+    Whole,
+    /// Down the energy, which is convex and tells how far to go.
+    Down,
+}
+
 pub(crate) struct Problem<'a> {
     pub(crate) system: &'a System,
     pub(crate) time: f64,
@@ -47,8 +58,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) springs: f64,
     /// What their stiffness is multiplied by at each unknown; without it 1, and the square of the size for spins.
     pub(crate) metric: Vec<f64>,
-    /// Whether the energy is convex, and tells how far to go.
-    pub(crate) goes_down: bool,
+    /// How far steps are followed.
+    pub(crate) way: Way,
     /// A share of forces on the unknowns of bodies, and of what constraints lack, that is not there yet.
     pub(crate) held_back: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Unknowns that are spins.
@@ -94,12 +105,13 @@ impl Problem<'_> {
         // after it corrects that.
         let is_stiff = self.system.bodies.iter().any(|b| b.is_nearly_incompressible());
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
-        let search = if self.goes_down {
-            Search::Energy
-        } else if predicts || is_stiff || !self.metric.is_empty() {
-            Search::Watchdog { patience: PATIENCE }
-        } else {
-            Search::Monotone
+        // Nor does anything that contact could change call for short steps where there is none.
+        let whole = predicts || is_stiff || !self.metric.is_empty() || self.system.contacts.is_empty();
+        let search = match self.way {
+            Way::Down => Search::Energy,
+            Way::Whole => Search::Watchdog { patience: PATIENCE },
+            Way::ByBodies if whole => Search::Watchdog { patience: PATIENCE },
+            Way::ByBodies => Search::Monotone,
         };
         Newton { most_iterations: MOST_ITERATIONS, search }
     }

@@ -5,7 +5,7 @@
 
 use crate::body::UnstableMaterial;
 use crate::dynamics::Moved;
-use crate::equilibrium::Problem;
+use crate::equilibrium::{Problem, Way};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
@@ -65,6 +65,8 @@ pub(crate) const MOST_AUGMENTATIONS: usize = 60;
 pub(crate) enum Strategy<'a> {
     /// From the last state.
     Straight,
+    /// From the last state, by whole steps as they come: what is slender bends with a residual that rises before it falls.
+    Whole,
     /// From the last state, down a convex energy.
     Down,
     /// Round what failed so.
@@ -296,6 +298,12 @@ impl System {
                 return found;
             }
         }
+        if self.bodies.iter().any(|body| !body.is_linear() && !body.is_rigid() && !body.is_inelastic()) {
+            match self.by(Strategy::Whole, start, time, solved, report) {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
         if self.step.is_some() {
             return Err(failed);
         }
@@ -341,9 +349,13 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Converged<SystemState>, IncrementError> {
         let mut problem = self.problem(start, time, *solved)?;
-        problem.goes_down = matches!(way, Strategy::Down);
+        problem.way = match way {
+            Strategy::Down => Way::Down,
+            Strategy::Whole => Way::Whole,
+            _ => Way::ByBodies,
+        };
         let found = match way {
-            Strategy::Straight => match problem.solve(start, report) {
+            Strategy::Straight | Strategy::Whole => match problem.solve(start, report) {
                 // Newton's method may find a body far away, where it touches nothing, or on the other side of another, or one that
                 // slid though friction holds it.
                 Ok(found)
@@ -386,7 +398,7 @@ impl System {
             is_free: self.step.is_none() && stiffness != Stiffness::KeptByBodies && self.has_free_body(),
             springs: 0.0,
             metric: Vec::new(),
-            goes_down: false,
+            way: Way::ByBodies,
             held_back: None,
             is_spin: self.is_spin(),
             rows,

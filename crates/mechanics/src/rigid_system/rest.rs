@@ -185,7 +185,7 @@ impl Least<'_> {
     fn farther(&self, at: &Dual, step: &DVector<f64>, mut best: Dual) -> Dual {
         for k in 1..MOST_HALVINGS as i32 {
             let next = self.dual(&at.y + step * 2f64.powi(k));
-            if !(next.value < best.value) {
+            if next.value.is_nan() || next.value >= best.value {
                 break;
             }
             best = next;

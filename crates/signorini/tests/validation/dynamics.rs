@@ -434,3 +434,72 @@ fn motion_that_cannot_be_is_refused_at_its_key() {
     let found = told("dynamics = {}", "dynamics = {}\ncontrol.arc_length = { size = 0.1 }");
     assert!(found.contains("in time"), "{found}");
 }
+
+/// A block that slides to rest, with events located and without, with damping by stiffness and without: friction turns round as
+/// its vibrations do, and damping acts in supports and contacts too.
+#[test]
+fn a_block_slides_to_rest() {
+    let case = r#"
+space = "plane_strain"
+gravity = [0, -10]
+[bodies.floor.rigid]
+shape.plane = { point = [0, 0], normal = [0, 1] }
+[bodies.box.solid]
+mesh.box = { min = [0, 0], max = [0.2, 0.1], cells = [4, 2] }
+material.linear_elastic = { youngs_modulus = 1e8, poissons_ratio = 0.3 }
+density = 1000
+velocity = [0.5, 0]
+[contacts.touch]
+between = ["box:bottom", "floor"]
+friction.coulomb = { mu = 0.2 }
+[output]
+probes.corner = [0, 0.1]
+[[steps]]
+to = 0.1
+[[steps]]
+to = 0.45
+increments = 70
+dynamics = {}
+"#;
+    for more in [("events", "1e-4"), ("dynamics.damping.stiffness", "1e-5"), ("increments", "175")] {
+        let found = summary(case, &with(&[(&format!("steps.1.{}", more.0), more.1)]));
+        assert_eq!(found["converged"], true, "{more:?} {}", found["verdict"]);
+        assert_ne!(found["answer"]["verdict"], "not_an_answer", "{more:?} {}", found["answer"]);
+        // v₀²/(2 μ g)
+        let way = number(&last_step(&found)["probes"]["corner"]["displacement"][0]);
+        assert!((way - 0.0625).abs() < 1.5e-3, "{more:?} {way}");
+    }
+}
+
+/// A cantilever with damping by stiffness alone: `ζ = β ω / 2` takes its amplitude down by `exp(-ζ ω t)`, and its support forces
+/// balance.
+#[test]
+fn damping_by_stiffness_is_that_of_its_first_mode() {
+    let case = r#"
+space = "plane_stress"
+[bodies.bar.solid]
+mesh.box = { min = [0, 0], max = [10, 1], cells = [10, 1] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 1000, poissons_ratio = 0.3 }
+density = 1
+velocity = [0, "0.001*x^2"]
+[supports.root]
+on = "bar:left"
+displacement = [0, 0]
+[[steps]]
+to = 40
+increments = 800
+dynamics = { damping = { stiffness = 0.1 } }
+"#;
+    let found = summary(case, &set(&[]));
+    assert_eq!(found["answer"]["verdict"], "right_within", "{}", found["answer"]);
+    // ω = 1.875² √(EI/ρA)/L², of Euler and Bernoulli; the slender beam lacks a few per cent by shear.
+    let omega = 1.8751f64.powi(2) * (1000.0f64 / 12.0).sqrt() / 100.0;
+    let steps = steps(&found);
+    let after = |t: f64| steps.iter().filter(move |s| number(&s["time"]) > t);
+    let most =
+        |t: f64, until: f64| after(t).filter(|s| number(&s["time"]) < until).map(|s| energy(s)).fold(0.0, f64::max);
+    let (early, late) = (most(10.0, 20.0), most(30.0, 40.0));
+    let rate = (early / late).ln() / 20.0;
+    assert!((rate / (0.1 * omega * omega) - 1.0).abs() < 0.08, "{rate} {}", 0.1 * omega * omega);
+}

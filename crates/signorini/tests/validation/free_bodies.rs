@@ -1,7 +1,7 @@
 //! Solids that contact alone holds, or nothing: mistakes are told at their place, what can be solved is.
 
 use super::solids::at;
-use super::{error, example, last_step, set, summary};
+use super::{error, example, last_step, number, set, summary};
 use serde_json::Value;
 
 /// Replaces a part of a gallery case, and returns the error with the text it points at.
@@ -320,4 +320,43 @@ fn a_ball_that_wears_sinks() {
         let (force, depth) = (at(step, "/contacts/c/force/0"), at(step, "/free_bodies/ball/displacement/1"));
         assert!((force - 0.2).abs() < 1e-9 && (depth + 1e-2).abs() < 1e-9, "{force} {depth}");
     }
+}
+
+/// The centre of a free body of triangles without a mass is that of its volume: a weight acts there.
+#[test]
+fn a_free_mesh_has_its_centre_in_its_volume() {
+    let case = r#"
+space = "3d"
+[bodies.cube.rigid]
+motion.free = {}
+[bodies.cube.rigid.shape.triangles]
+points = [[3, 0, 0], [4, 0, 0], [4, 1, 0], [3, 1, 0], [3, 0, 1], [4, 0, 1], [4, 1, 1], [3, 1, 1]]
+triangles = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4],
+             [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]]
+[loads.weight]
+on = "cube"
+force = [0, 0, -1]
+[supports.held]
+on = "cube"
+displacement = [0, 0, 0]
+rotation = [0, 0, 0]
+"#;
+    let moment = last_step(&summary(case, &set(&[])))["support_moments"]["held"].clone();
+    for (k, exact) in [0.5, -3.5, 0.0].iter().enumerate() {
+        assert!((number(&moment[k]) - exact).abs() < 1e-12, "{moment}");
+    }
+    let ball = r#"
+space = "3d"
+[bodies.ball.rigid]
+shape.level_set = { negative_inside = "hypot(x - 3, hypot(y, z)) - 1", min = [1, -2, -2], max = [5, 2, 2], cells = 8 }
+motion.free = {}
+[loads.weight]
+on = "ball"
+force = [0, 0, -1]
+[supports.held]
+on = "ball"
+displacement = [0, 0, 0]
+rotation = [0, 0, 0]
+"#;
+    assert!(error(ball).message.contains("where the centre of `ball` is"), "{}", error(ball).message);
 }

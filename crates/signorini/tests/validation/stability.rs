@@ -249,3 +249,61 @@ increments = 4
         assert_eq!(carried[0].min(carried[1]), 0.0);
     }
 }
+
+/// The complete elliptic integrals of first and second kind, by the arithmetic-geometric mean.
+fn elliptic(k: f64) -> [f64; 2] {
+    let (mut a, mut b, mut sum, mut weight) = (1.0, (1.0 - k * k).sqrt(), 0.5 * k * k, 0.5);
+    for _ in 0..40 {
+        let c = 0.5 * (a - b);
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+        weight *= 2.0;
+        sum += weight * c * c;
+    }
+    let first = std::f64::consts::FRAC_PI_2 / a;
+    [first, first * (1.0 - sum)]
+}
+
+/// A slender solid column past its critical load, beside the elastica: it bends by whole steps of Newton's method.
+#[test]
+fn a_solid_column_bends_as_the_elastica() {
+    let case = r#"
+space = "plane_stress"
+[bodies.col.solid]
+mesh.box = { min = [0, 0], max = [4, 100], cells = [1, 12] }
+degree = 3
+strain = "finite"
+material.saint_venant_kirchhoff = { youngs_modulus = 1000, poissons_ratio = 0 }
+[supports.base]
+on = "col:bottom"
+displacement = [0, 0]
+[loads.p]
+on = "col:top"
+force = [0, "-2*t"]
+[output]
+probes.tip = [2, 100]
+[[steps]]
+to = 1
+increments = 10
+"#;
+    let found = summary(case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let critical = std::f64::consts::PI.powi(2) * 1000.0 * 64.0 / 12.0 / (4.0 * 1e4);
+    let (mut low, mut high) = (0.0, 1.0 - 1e-9);
+    for _ in 0..60 {
+        let k = 0.5 * (low + high);
+        let load = (2.0 * elliptic(k)[0] / std::f64::consts::PI).powi(2);
+        if load > 2.0 / critical { high = k } else { low = k }
+    }
+    let [first, second] = elliptic(low);
+    let exact = [2.0 * low * 100.0 / first, 100.0 * (2.0 * second / first - 2.0)];
+    let tip = &last_step(&found)["probes"]["tip"]["displacement"];
+    let seen = [number(&tip[0]).abs(), number(&tip[1])];
+    // Its law is one of large strains, which are 6 % here, and it is compressed and sheared.
+    for (a, b) in seen.iter().zip(exact) {
+        assert!((a / b - 1.0).abs() < 0.03, "{seen:?} {exact:?}");
+    }
+    // Without a fold an increment takes a few steps.
+    let bent = summary(&case.replace("force = [0, \"-2*t\"]", "force = [\"0.8*t\", 0]"), &set(&[]));
+    let steps = bent["steps"].as_array().expect("steps");
+    assert!(steps.iter().all(|s| number(&s["iterations"]) <= 7.0), "{}", bent["verdict"]);
+}

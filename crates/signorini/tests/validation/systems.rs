@@ -393,3 +393,63 @@ fn a_mortar_has_an_equation_for_every_node() {
     let found = summary(hook, &set(&[]));
     assert!(number(&last_step(&found)["contacts"]["slide"]["force"][1]) < 0.0);
 }
+
+/// A rope that hangs from one end, laid out along the vertical or across it: nothing holds it across itself before it hangs.
+#[test]
+fn a_rope_hangs_from_one_end() {
+    for end in ["0, 0, -1", "1, 0, 0"] {
+        let case = format!(
+            r#"
+space = "3d"
+units = "m-N-Pa"
+gravity = [0, 0, -9.81]
+[bodies.rope.rope]
+path.points = [[0, 0, 0], [{end}]]
+cells = 20
+stiffness = 1e5
+mass_per_length = 0.1
+[supports.top]
+on = "rope:start"
+displacement = [0, 0, 0]
+"#
+        );
+        let found = summary(&case, &set(&[]));
+        assert_eq!(found["converged"], true, "{}", found["verdict"]);
+        // What the support carries, not the mean of the first cell.
+        let rope = &last_step(&found)["curves"]["rope"];
+        assert!((number(&rope["start_tension"]) / 0.981 - 1.0).abs() < 1e-8, "{rope}");
+    }
+}
+
+/// A cantilever pressed on a cylinder that is much smaller than its cells passes through it between its points: told.
+#[test]
+fn cells_longer_than_what_they_touch_are_told() {
+    let case = r#"
+space = "3d"
+[bodies.b.beam]
+path.points = [[0, 0, 0], [1000, 0, 0]]
+cells = 20
+section.stiffness = { EA = 1e8, GA = 1e8, EI = 1e8, GJ = 1e8 }
+radius = 5
+[bodies.p.rigid]
+shape.cylinder = { point = [500, 0, -15.2], axis = [0, 1, 0], radius = 10 }
+[supports.c]
+on = "b:start"
+displacement = [0, 0, 0]
+rotation = [0, 0, 0]
+[loads.p]
+on = "b:end"
+force = [0, 0, -2]
+[contacts.c]
+between = ["b", "p"]
+"#;
+    let doubts = |cells: &str| summary(case, &set(&[("bodies.b.beam.cells", cells.into())]))["answer"].to_string();
+    assert!(doubts("20").contains("of radius 1.500e1 with its own"), "{}", doubts("20"));
+    let fine = summary(case, &set(&[("bodies.b.beam.cells", "160".into())]));
+    assert_eq!(fine["answer"]["verdict"], "right_within", "{}", fine["answer"]);
+    // R = P (3 L/a - 1) a³/… of a cantilever with a stop at its half, of gap .2.
+    let force = number(&last_step(&fine)["contacts"]["c"]["force"][2]);
+    let [p, l, a, stiffness, gap] = [2.0, 1000.0, 500.0, 1e8, 0.2f64];
+    let exact = (p * a * a * (3.0 * l - a) / (6.0 * stiffness) - gap) * 3.0 * stiffness / (a * a * a);
+    assert!((force / exact - 1.0).abs() < 0.01, "{force} {exact}");
+}

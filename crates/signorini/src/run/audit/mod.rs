@@ -109,6 +109,7 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
         stored: value["stored"].as_f64(),
         dissipated: Vec::new(),
         dissipated_in_bodies: 0.0,
+        in_motion: false,
     })
 }
 

@@ -87,6 +87,7 @@ impl SystemAudit {
             stored: Some(result.energy - state.owed.iter().sum::<f64>()),
             dissipated: dissipated.collect(),
             dissipated_in_bodies: result.dissipated_in_bodies.iter().sum(),
+            in_motion: result.moved.is_some(),
         };
         let mut found = audited(setting, before.as_ref().map(|b| &b.0), &now, &stability(plan, step));
         if are_means {

@@ -28,8 +28,7 @@ pub struct IncrementResult {
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
-    /// Force on both ends of each curve by the support or the loads there; none of ends that are free or held in part, and of
-    /// other bodies.
+    /// Force in each curve at both of its ends; none of closed curves and other bodies.
     pub end_forces: Vec<[Option<Vector<3>>; 2]>,
     /// Force of each linear constraint on its nodes, per unit of their factors.
     pub constraint_forces: Vec<f64>,
@@ -484,7 +483,7 @@ impl System {
             iterations,
             history,
             sites,
-            end_forces: self.end_forces(&at, state, time),
+            end_forces: self.end_forces(state, time),
             support_forces,
             constraint_forces,
             energy: at.energy,

@@ -2,7 +2,7 @@
 
 use crate::body::{Body, BodyState, Contribution, Hold, Order};
 use crate::increment_error::IncrementError;
-use crate::system::{Assembled, AssemblyError, Held, System, SystemState};
+use crate::system::{AssemblyError, Held, System, SystemState};
 use signorini_geometry::Vector;
 
 /// A scalar product over unknowns.
@@ -21,53 +21,31 @@ pub(crate) fn resultant(body: &dyn Body, state: &BodyState, forces: &[f64]) -> [
 const ENDS: [&str; 2] = ["start", "end"];
 
 impl System {
-    /// What the supports and loads at both ends of each curve do to it, of the residual at a state: the force in the curve
-    /// there, without what acts on half a cell. None of ends that are free or held in part, nor of what is no curve.
-    pub(crate) fn end_forces(&self, at: &Assembled, state: &SystemState, time: f64) -> Vec<[Option<Vector<3>>; 2]> {
+    /// The force in each curve at both of its ends: of what holds, pulls or touches it right there, without what acts on half a
+    /// cell. None of closed curves and other bodies.
+    pub(crate) fn end_forces(&self, state: &SystemState, time: f64) -> Vec<[Option<Vector<3>>; 2]> {
         (0..self.bodies.len())
             .map(|body| match self.bodies[body].curve(None) {
-                Some(_) => ENDS.map(|end| self.end_force(at, state, time, (body, end))),
+                Some(_) => ENDS.map(|end| self.end_force(state, time, (body, end))),
                 None => [None; 2],
             })
             .collect()
     }
 
-    fn end_force(
-        &self,
-        at: &Assembled,
-        state: &SystemState,
-        time: f64,
-        (body, end): (usize, &str),
-    ) -> Option<Vector<3>> {
-        let (first, own) = (self.numbering().0[body], &state.bodies[body]);
-        let still = |_: &_| 0.0;
-        let still: &dyn Fn(&_) -> f64 = &still;
+    fn end_force(&self, state: &SystemState, time: f64, (number, end): (usize, &str)) -> Option<Vector<3>> {
+        let (body, own) = (self.bodies[number].as_ref(), &state.bodies[number]);
+        let still: &dyn Fn(&_) -> f64 = &|_| 0.0;
         let hold = Hold { displacement: [Some(still); 3], ..Hold::default() };
-        let constraints = self.bodies[body].hold(Some(end), &hold, own).ok()?;
+        let constraints = body.hold(Some(end), &hold, own).ok()?;
         let [x, y, z] = &constraints[..] else { return None };
+        let mut out = Contribution::new(body.unknowns());
+        body.internal(own, Order::First, &mut out).ok()?;
+        let is_along = |load: &&crate::PlacedLoad| load.part.body == number && load.part.group.is_none();
+        for load in self.loads.iter().filter(is_along) {
+            load.act(body, own, time, Order::First, &mut out).ok()?;
+        }
         let terms = [x, y, z].map(|constraint| constraint.terms[0]);
-        let mut loads = Contribution::new(self.bodies[body].unknowns());
-        let is_here = |load: &&crate::PlacedLoad| load.part.body == body && load.part.group.as_deref() == Some(end);
-        for load in self.loads.iter().filter(is_here) {
-            load.act(self.bodies[body].as_ref(), own, time, Order::First, &mut loads).ok()?;
-        }
-        let mut reaction = Vector::<3>::zeros();
-        let mut held = 0;
-        for (k, (unknown, factor)) in terms.iter().enumerate() {
-            if at.coupled.iter().any(|h| h.constraint.terms.iter().any(|term| term.0 == first + unknown)) {
-                return None;
-            }
-            if at.single.iter().any(|h| h.constraint.terms[0].0 == first + unknown) {
-                reaction[k] = at.residual[(first + unknown) as usize] / factor;
-                held += 1;
-            }
-        }
-        let load = Vector::<3>::from_fn(|k, _| -loads.forces[terms[k].0 as usize] / terms[k].1);
-        match held {
-            3 => Some(reaction + load),
-            0 if load != Vector::<3>::zeros() => Some(load),
-            _ => None,
-        }
+        Some(Vector::<3>::from_fn(|k, _| out.forces[terms[k].0 as usize] / terms[k].1))
     }
 
     /// The moment of each support on its body about the origin, in a state at a time.

@@ -220,9 +220,9 @@ pub struct StabilityReport {
 /// A rope or beam at the end of an increment. The axial force of a rope is not negative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveReport {
-    /// Tension at the start: of a rope the force of the support or load there; else the axial force in the first cell.
+    /// Tension at the start: of a rope without what acts along half a cell; of a beam the axial force in the first cell.
     pub start_tension: f64,
-    /// Tension at the end: of a rope the force of the support or load there; else the axial force in the last cell.
+    /// Tension at the end: of a rope without what acts along half a cell; of a beam the axial force in the last cell.
     pub end_tension: f64,
     /// Largest axial force.
     pub max_tension: f64,

@@ -189,7 +189,7 @@ pub(super) fn stability_report(system: &System, told: &Stability) -> StabilityRe
     }
 }
 
-/// The forces on the ends of a rope: they are its tension there. The axial force of a beam is one component of them.
+/// The forces in a rope at its ends: its tension there. The axial force of a beam is one component of them.
 fn end_forces(system: &System, result: &IncrementResult, curve: &CurveShown) -> [Option<f64>; 2] {
     let body = system.bodies.iter().position(|b| b.name() == curve.name).filter(|_| curve.is_rope);
     let forces = body.and_then(|body| result.end_forces.get(body)).copied().unwrap_or_default();

@@ -84,8 +84,8 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
             continue;
         }
         let [own, other] = contact.bodies();
-        // A body may be far from folding onto itself.
-        if own == other {
+        // A body may be far from folding onto itself, and bodies that move come and go.
+        if own == other || result.moved.is_some() {
             continue;
         }
         if by_mortar && sites.iter().all(|s| s.gap.is_none()) {

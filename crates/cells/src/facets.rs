@@ -6,7 +6,7 @@
 //! points these integrals are the weights of a rule that is exact for the stiffness. Some weights may be negative.
 
 use crate::error::CellsError;
-use crate::polygon::{area_vector, clip, clip_line, fan, polygon_points, triangle_points};
+use crate::polygon::{area_vector, clip, clip_line, fan, triangle_points};
 use crate::region::{BoundaryPoint, FacetFoot, Filling, Integration, MaterialRule, Region};
 use signorini_fem::QuadraturePoint;
 use signorini_fem::cut::End;
@@ -170,8 +170,8 @@ impl Region<3> for FacetBody {
                 }
             }
             if on_material_side(&within, b, &normal) {
-                let points = polygon_points(&within, degree + 2, size.min());
-                boundary.extend(points.into_iter().map(|(x, weight)| BoundaryPoint { x, weight, normal }));
+                let points = fan(&within).flat_map(|part| triangle_points(&part, degree + 2));
+                boundary.extend(points.map(|(x, weight)| BoundaryPoint { x, weight, normal }));
             }
             for part in fan(&within).filter(|_| !lies_on_end) {
                 for (x, w) in triangle_points(&part, 3 * degree + 2) {

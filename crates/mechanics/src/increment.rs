@@ -297,7 +297,11 @@ impl System {
                 return found;
             }
         }
-        if self.bodies.iter().any(|body| !body.is_linear() && !body.is_rigid() && !body.is_inelastic()) {
+        if self
+            .bodies
+            .iter()
+            .any(|body| !body.is_linear() && !body.is_rigid() && !body.is_inelastic() && body.curve(None).is_none())
+        {
             match self.by(Strategy::Whole, start, time, solved, report) {
                 Err(error) if is_curable(&error) => {}
                 found => return found,

@@ -4,7 +4,6 @@ mod facets;
 mod image;
 mod legendre;
 mod moments;
-mod polygon;
 mod space;
 mod spread;
 mod tree;

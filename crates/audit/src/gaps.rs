@@ -58,10 +58,7 @@ fn across(setting: &Setting, state: &State, number: usize) -> Option<Finding> {
     let cell = match &setting.bodies[own].form {
         Form::Solid(solid) => solid.largest_cell(),
         Form::Rigid(rigid) => samples::OF_RIGID * rigid.size,
-        Form::Curve(curve) => {
-            let length = |p: &[u32; 2]| (curve.rest[p[1] as usize] - curve.rest[p[0] as usize]).norm();
-            curve.parts * curve.pieces.iter().map(length).fold(0.0, f64::max)
-        }
+        Form::Curve(curve) => curve.longest_cell(),
     };
     let motion = state.bodies[other].motion();
     let gap = |t: &Touch| {

@@ -34,8 +34,7 @@ fn of_curve(setting: &Setting, state: &State, contact: &Contact, touches: &[Touc
     let (Form::Curve(curve), Form::Rigid(rigid)) = (&setting.bodies[own].form, &setting.bodies[other].form) else {
         return None;
     };
-    let length = |p: &[u32; 2]| (curve.rest[p[1] as usize] - curve.rest[p[0] as usize]).norm();
-    let cell = curve.parts * curve.pieces.iter().map(length).fold(0.0, f64::max);
+    let cell = curve.longest_cell();
     let motion = state.bodies[other].motion();
     let carrying = touches.iter().filter(|t| t.is_closed && t.pressure > 0.0);
     let curvature = |t: &Touch| rigid.gap_now(&motion, &t.x).hessian.norm();

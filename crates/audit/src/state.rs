@@ -118,6 +118,14 @@ pub struct Curve {
     pub bends: bool,
 }
 
+impl Curve {
+    /// The length of the longest cell.
+    pub fn longest_cell(&self) -> f64 {
+        let length = |p: &[u32; 2]| (self.rest[p[1] as usize] - self.rest[p[0] as usize]).norm();
+        self.parts * self.pieces.iter().map(length).fold(0.0, f64::max)
+    }
+}
+
 /// A body that does not deform.
 #[derive(Clone)]
 pub struct Rigid {

@@ -4,7 +4,7 @@
 //! boundary that the quadrature recovers (Parvizian, Düster & Rank, Comput. Mech. 41, 2007; Düster, Rank & Szabó,
 //! *The p-version of the finite element and finite cell methods*, 2017).
 //!
-//! - [`Domain`], [`shapes`]: bodies from implicit shapes; [`facets`], [`polygon`]: from closed surfaces of triangles; [`voxels`] and
+//! - [`Domain`], [`shapes`]: bodies from implicit shapes; [`facets`], `polygon`: from closed surfaces of triangles; [`voxels`] and
 //!   [`image`]: from images.
 //! - [`region`]: the quadrature of the material in a cell and of its boundary.
 //! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
@@ -40,7 +40,7 @@ pub mod moments;
 mod nitsche;
 mod numbering;
 pub mod place;
-pub mod polygon;
+mod polygon;
 pub mod region;
 pub mod schwarz;
 pub mod shapes;

@@ -1,10 +1,10 @@
-//! Plane polygons in space: their parts within a box, and points that integrate over them.
+//! Plane polygons in space: their parts within a box, and points that integrate over triangles.
 
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Point, Vector};
 
 /// The part of a polygon with `sign (x_axis - at) ≥ 0` (Sutherland & Hodgman).
-pub fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
+pub(crate) fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
     let height = |x: &Point<3>| sign * (x[axis] - at);
     if polygon.iter().all(|x| height(x) >= 0.0) {
         return polygon;
@@ -26,7 +26,7 @@ pub fn clip(polygon: Vec<Point<3>>, axis: usize, at: f64, sign: f64) -> Vec<Poin
 }
 
 /// The part of a line with `sign (x_axis - at) ≥ 0`; nothing of one that has none.
-pub fn clip_line(line: &[Point<3>], axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
+pub(crate) fn clip_line(line: &[Point<3>], axis: usize, at: f64, sign: f64) -> Vec<Point<3>> {
     let [p, q] = line[..] else { return Vec::new() };
     let [a, b] = [p, q].map(|x| sign * (x[axis] - at));
     let cut = || p + (q - p) * (a / (a - b));
@@ -38,16 +38,16 @@ pub fn clip_line(line: &[Point<3>], axis: usize, at: f64, sign: f64) -> Vec<Poin
     }
 }
 
-pub fn fan(polygon: &[Point<3>]) -> impl Iterator<Item = [Point<3>; 3]> + '_ {
+pub(crate) fn fan(polygon: &[Point<3>]) -> impl Iterator<Item = [Point<3>; 3]> + '_ {
     (2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]])
 }
 
-pub fn area_vector(polygon: &[Point<3>]) -> Vector<3> {
+pub(crate) fn area_vector(polygon: &[Point<3>]) -> Vector<3> {
     fan(polygon).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a))).sum()
 }
 
 /// Gauss points of a triangle, collapsed from the square.
-pub fn triangle_points([a, b, c]: &[Point<3>; 3], n: usize) -> Vec<(Point<3>, f64)> {
+pub(crate) fn triangle_points([a, b, c]: &[Point<3>; 3], n: usize) -> Vec<(Point<3>, f64)> {
     let (u, v) = (b - a, c - a);
     let area = u.cross(&v).norm();
     if area == 0.0 {

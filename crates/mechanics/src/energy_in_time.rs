@@ -39,17 +39,18 @@ impl Solved<'_> {
         Ok([at(self.start)?, at(state)?])
     }
 
-    /// The forces of damping by stiffness within each body: none without it.
-    pub fn damping(&self, state: &SystemState) -> Result<Vec<Vec<f64>>, AssemblyError> {
+    /// The forces of damping by stiffness on all unknowns of bodies: zero without it.
+    pub fn damping(&self, state: &SystemState) -> Result<Vec<f64>, AssemblyError> {
         let over_time = self.step.damping[1] / self.step.size;
-        let of = |k: usize| {
-            if over_time == 0.0 {
-                return Ok(vec![0.0; self.system.bodies[k].unknowns()]);
-            }
+        if over_time == 0.0 {
+            return Ok(vec![0.0; self.system.numbering().1]);
+        }
+        let mut out = Vec::new();
+        for k in 0..self.system.bodies.len() {
             let [(_, before), (_, after)] = self.internal(k, state)?;
-            Ok(after.iter().zip(&before).map(|(b, a)| over_time * (b - a)).collect())
-        };
-        (0..self.system.bodies.len()).map(of).collect()
+            out.extend(after.iter().zip(&before).map(|(b, a)| over_time * (b - a)));
+        }
+        Ok(out)
     }
 
     /// The mean of a value by the weights of the forces.
@@ -75,7 +76,7 @@ impl Solved<'_> {
 
     /// What damping, and the weights of the method, took from displacements before energy is given back: of the equation times the
     /// displacements, all but the changes of the energies and the works of forces by their means.
-    pub fn damped(&self, state: &SystemState) -> Result<f64, IncrementError> {
+    pub fn damped(&self, state: &SystemState, damping: &[f64]) -> f64 {
         let (system, step, start) = (self.system, self.step, self.start);
         let Weights { alpha_m, alpha_f, .. } = step.weights;
         let u = &step.motion(system, state);
@@ -95,12 +96,8 @@ impl Solved<'_> {
                 }
             }
         }
-        let [by_mass, by_stiffness] = step.damping;
-        damped += by_mass / step.size * system.product_by_mass(u, u);
-        if by_stiffness > 0.0 {
-            damped += self.damping(state)?.iter().flatten().zip(u).map(|(f, u)| f * u).sum::<f64>();
-        }
-        Ok(damped)
+        damped += step.damping[0] / step.size * system.product_by_mass(u, u);
+        damped + damping.iter().zip(u).map(|(f, u)| f * u).sum::<f64>()
     }
 
     /// The work of contact as it closed or opened: surfaces that keep each other out do none.

@@ -50,9 +50,9 @@ impl System {
         let mut at = self.end_time_step(step, &mut state)?;
         let before = (0..self.contacts.len()).map(|k| self.sites(k, start)).collect::<Result<_, _>>()?;
         let solved = Solved { system: self, step, start, before, after: &result.sites };
-        let damped = solved.damped(&state)?;
-        let dissipated = solved.rubbed();
         let damping = solved.damping(&state)?;
+        let damped = solved.damped(&state, &damping);
+        let dissipated = solved.rubbed();
         let by_contact = solved.restore(&mut state)?;
         if step.conserves() {
             solved.conserve(&mut state, &unbalanced)?;
@@ -60,10 +60,10 @@ impl System {
         result.dissipated = dissipated;
         // Supports hold what moves, too.
         self.add_momenta(&state.balancing, 1.0, &mut at.residual[..state.balancing.len()]);
-        damping.iter().flatten().zip(&mut at.residual).for_each(|(own, residual)| *residual += own);
+        damping.iter().zip(&mut at.residual).for_each(|(own, residual)| *residual += own);
         result.support_forces = self.support_forces(&at, &state);
-        let inertia = self.inertia(step, &state, &damping.concat())?;
-        let damping = if step.damping[1] > 0.0 { self.resultants_of(&state, &damping.concat()) } else { Vec::new() };
+        let inertia = self.inertia(step, &state, &damping)?;
+        let damping = if step.damping[1] > 0.0 { self.resultants_of(&state, &damping) } else { Vec::new() };
         let (before, after) = (self.moving(start), self.moving(&state));
         let error = self.error_in_time(step, &state);
         result.moved = Some(Moved { before, after, inertia, damped, damping, error, by_contact });

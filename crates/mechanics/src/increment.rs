@@ -28,8 +28,6 @@ pub struct IncrementResult {
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.
     pub support_forces: Vec<[Vector<3>; 2]>,
-    /// Force in each curve at both of its ends; none of closed curves and other bodies.
-    pub end_forces: Vec<[Option<Vector<3>>; 2]>,
     /// Force of each linear constraint on its nodes, per unit of their factors.
     pub constraint_forces: Vec<f64>,
     pub energy: f64,
@@ -487,7 +485,6 @@ impl System {
             iterations,
             history,
             sites,
-            end_forces: self.end_forces(state, time),
             support_forces,
             constraint_forces,
             energy: at.energy,

@@ -17,35 +17,26 @@ pub(crate) fn resultant(body: &dyn Body, state: &BodyState, forces: &[f64]) -> [
     [Vector::<3>::from_fn(|i, _| along(i)), Vector::<3>::from_fn(|i, _| along(3 + i))]
 }
 
-/// The groups of a curve that are one of its ends.
-const ENDS: [&str; 2] = ["start", "end"];
-
 impl System {
-    /// The force in each curve at both of its ends: of what holds, pulls or touches it right there, without what acts on half a
-    /// cell. None of closed curves and other bodies.
-    pub(crate) fn end_forces(&self, state: &SystemState, time: f64) -> Vec<[Option<Vector<3>>; 2]> {
-        (0..self.bodies.len())
-            .map(|body| match self.bodies[body].curve(None) {
-                Some(_) => ENDS.map(|end| self.end_force(state, time, (body, end))),
-                None => [None; 2],
-            })
-            .collect()
-    }
-
-    fn end_force(&self, state: &SystemState, time: f64, (number, end): (usize, &str)) -> Option<Vector<3>> {
+    /// The force in a curve at both of its ends: of what holds, pulls or touches it right there, without what acts on half a cell.
+    /// None of closed curves and other bodies.
+    pub fn end_forces(&self, number: usize, state: &SystemState, time: f64) -> Option<[Vector<3>; 2]> {
         let (body, own) = (self.bodies[number].as_ref(), &state.bodies[number]);
-        let still: &dyn Fn(&_) -> f64 = &|_| 0.0;
-        let hold = Hold { displacement: [Some(still); 3], ..Hold::default() };
-        let constraints = body.hold(Some(end), &hold, own).ok()?;
-        let [x, y, z] = &constraints[..] else { return None };
+        body.curve(None)?;
         let mut out = Contribution::new(body.unknowns());
         body.internal(own, Order::First, &mut out).ok()?;
-        let is_along = |load: &&crate::PlacedLoad| load.part.body == number && load.part.group.is_none();
-        for load in self.loads.iter().filter(is_along) {
+        for load in self.loads.iter().filter(|l| l.part.body == number && l.part.group.is_none()) {
             load.act(body, own, time, Order::First, &mut out).ok()?;
         }
-        let terms = [x, y, z].map(|constraint| constraint.terms[0]);
-        Some(Vector::<3>::from_fn(|k, _| out.forces[terms[k].0 as usize] / terms[k].1))
+        let still: &dyn Fn(&_) -> f64 = &|_| 0.0;
+        let hold = Hold { displacement: [Some(still); 3], ..Hold::default() };
+        let at = |end: &str| {
+            let constraints = body.hold(Some(end), &hold, own).ok()?;
+            let [x, y, z] = &constraints[..] else { return None };
+            let forces = [x, y, z].map(|c| out.forces[c.terms[0].0 as usize] / c.terms[0].1);
+            Some(Vector::<3>::from(forces))
+        };
+        Some([at("start")?, at("end")?])
     }
 
     /// The moment of each support on its body about the origin, in a state at a time.

@@ -184,10 +184,11 @@ impl System {
         let largest = at.sizes[..count].iter().copied().fold(0.0, f64::max);
         let mut forces = at.residual;
         forces.truncate(count);
-        self.held_unknowns(state, after)?.into_iter().for_each(|unknown| forces[unknown] = 0.0);
         let damping = self.change_of_internal(state, by_stiffness)?;
         let mut right: Vec<f64> = forces.iter().zip(&damping).map(|(f, d)| -f - d).collect();
-        self.held_unknowns(state, after)?.into_iter().for_each(|unknown| right[unknown] = 0.0);
+        for unknown in self.held_unknowns(state, after)? {
+            (forces[unknown], right[unknown]) = (0.0, 0.0);
+        }
         state.balancing = self.by_mass(&self.masses, &right)?;
         state.accelerations = state.balancing.iter().zip(&state.velocities).map(|(b, v)| b - by_mass * v).collect();
         let is_balanced = forces.iter().all(|f| f.abs() <= UNBALANCED * largest);

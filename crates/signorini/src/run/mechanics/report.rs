@@ -167,7 +167,7 @@ pub fn step_report(
         curves: shown
             .curves
             .iter()
-            .map(|c| (c.name.clone(), curve_report(c, &end_forces(system, result, c))))
+            .map(|c| (c.name.clone(), curve_report(c, end_tensions(system, (state, shown.time), c))))
             .collect(),
         cells: means.collect(),
         free_bodies: poses.collect(),
@@ -190,19 +190,21 @@ pub(super) fn stability_report(system: &System, told: &Stability) -> StabilityRe
 }
 
 /// The forces in a rope at its ends: its tension there. The axial force of a beam is one component of them.
-fn end_forces(system: &System, result: &IncrementResult, curve: &CurveShown) -> [Option<f64>; 2] {
-    let body = system.bodies.iter().position(|b| b.name() == curve.name).filter(|_| curve.is_rope);
-    let forces = body.and_then(|body| result.end_forces.get(body)).copied().unwrap_or_default();
-    forces.map(|force| force.map(|f| f.norm()))
+fn end_tensions(system: &System, (state, time): (&SystemState, f64), curve: &CurveShown) -> Option<[f64; 2]> {
+    let body = system.bodies.iter().position(|b| b.name() == curve.name).filter(|_| curve.is_rope)?;
+    Some(system.end_forces(body, state, time)?.map(|force| force.norm()))
 }
 
-fn curve_report(curve: &CurveShown, [start, end]: &[Option<f64>; 2]) -> CurveReport {
+fn curve_report(curve: &CurveShown, ends: Option<[f64; 2]>) -> CurveReport {
     let forces = &curve.forces;
+    let in_cells = || Some([*forces.first()?, *forces.last()?]);
+    let [start_tension, end_tension] = ends.or_else(in_cells).unwrap_or_default();
+    let all = || forces.iter().chain(ends.iter().flatten()).copied();
     CurveReport {
-        start_tension: start.or(forces.first().copied()).unwrap_or(0.0),
-        end_tension: end.or(forces.last().copied()).unwrap_or(0.0),
-        max_tension: forces.iter().chain(start).chain(end).copied().fold(f64::NEG_INFINITY, f64::max),
-        min_tension: forces.iter().chain(start).chain(end).copied().fold(f64::INFINITY, f64::min),
+        start_tension,
+        end_tension,
+        max_tension: all().fold(f64::NEG_INFINITY, f64::max),
+        min_tension: all().fold(f64::INFINITY, f64::min),
         slack_cells: curve.slack_cells(),
         section: section_report(curve),
         unstrained_length: curve.unstrained_length,

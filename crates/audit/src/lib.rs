@@ -18,6 +18,7 @@
 pub mod balance;
 pub mod boundary;
 pub mod bounds;
+mod crossings;
 pub mod finding;
 pub mod gaps;
 pub mod groups;
@@ -63,6 +64,7 @@ pub fn audited(setting: &Setting, before: Option<&State>, now: &State, stability
     let bounds = bounds(setting, now);
     let mut out = gaps::check(setting, now);
     if let Some(before) = before {
+        out.extend(crossings::check(setting, before, now));
         out.extend(jumps::check(setting, before, now));
         out.extend(path::check(setting, before, now));
     }

@@ -221,6 +221,39 @@ fn rope() -> Case {
     Case { setting, before: State { time: 1.0, ..now.clone() }, now, stability: Stability::NotTested }
 }
 
+/// A straight rope above another one, across it, that moves along it by a tenth and touches nothing.
+fn crossing_ropes() -> Case {
+    let line = |from: Vector<3>, to: Vector<3>| Curve {
+        rest: (0..=4).map(|k| from + (to - from) * (k as f64 / 4.0)).collect(),
+        pieces: (0..4).map(|k| [k, k + 1]).collect(),
+        parts: 1.0,
+        radius: 0.0,
+        strain_limit: None,
+        bends: false,
+    };
+    let [upper, lower] = [line(v(0.1, -1.0, 0.1), v(0.1, 1.0, 0.1)), line(v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0))];
+    let now = State {
+        time: 2.0,
+        bodies: [&upper, &lower].map(|curve| Placement::Points(curve.rest.clone())).into(),
+        contacts: vec![Vec::new()],
+        forces: Vec::new(),
+        stored: Some(0.0),
+        dissipated: vec![Some(0.0)],
+        dissipated_in_bodies: 0.0,
+        in_motion: false,
+    };
+    let setting = Setting {
+        space: Space::ThreeD,
+        bodies: [("upper", upper), ("lower", lower)]
+            .map(|(name, curve)| Body { name: name.into(), form: Form::Curve(curve), rounding: 0.0 })
+            .into(),
+        contacts: vec![contact(Carries::LineLoad, None)],
+    };
+    let mut case = Case { setting, before: State { time: 1.0, ..now.clone() }, now, stability: Stability::NotTested };
+    shift(&mut case, |_| v(0.1, 0.0, 0.0));
+    case
+}
+
 #[test]
 fn honest_states_are_answers() {
     // All that acts on it passes by the origin, but for rounding.
@@ -234,7 +267,7 @@ fn honest_states_are_answers() {
     for state in [&mut below.before, &mut below.now] {
         state.contacts[0].iter_mut().for_each(|t| (t.x, t.foot) = (down, down));
     }
-    for (name, case) in [("disc", disc()), ("below", below), ("block", block()), ("rope", rope())] {
+    for (name, case) in [("disc", disc()), ("below", below), ("block", block()), ("rope", rope()), ("ropes", crossing_ropes())] {
         let findings = audit(&case.setting, Some(&case.before), &case.now, &case.stability);
         assert_eq!(Verdict::of(&findings), Verdict::RightWithin, "{name}: {findings:#?}");
         assert!(findings.len() >= 4, "{name}: {findings:#?}");
@@ -397,6 +430,7 @@ fn all_spoilt() -> Vec<Spoilt> {
             c.now.bodies[1] = turned(0.2);
         }),
         spoilt("the block is on a branch that it leaves", Stable, block(), |c| c.stability = unstable()),
+        spoilt("a rope goes down through another", Gaps, crossing_ropes(), |c| shift(c, |_| v(0.0, 0.0, -0.3))),
         spoilt("the rope lies in the drum", Gaps, rope(), |c| shift(c, |x| x * -0.05)),
         spoilt("friction of the rope along its slip", Tractions, rope(), |c| touches(c).for_each(|t| t.slip *= -1.0)),
         spoilt("the rope is pulled by more than friction holds", Tractions, rope(), |c| {

@@ -10,7 +10,7 @@ pub use crate::points::{
 };
 
 use crate::axes::Axes;
-pub use crate::constitution::{BoxOfMaterial, Constitution, Means, Samples, UnstableMaterial};
+pub use crate::constitution::{BoxOfMaterial, Constitution, Means, PointValues, Samples, UnstableMaterial};
 use crate::curve::Curve;
 pub use crate::dynamics::{Inertial, Mass};
 use crate::linear_solver::Subspaces;

@@ -1,7 +1,7 @@
 //! What the material of a body is like, point by point and as a whole.
 
 use crate::body::BodyState;
-use signorini_geometry::Point;
+use signorini_geometry::{Point, Vector};
 
 /// A body that fills a box, such as a piece of a material from an image.
 pub trait BoxOfMaterial {
@@ -44,10 +44,23 @@ pub trait Constitution {
         0.0
     }
 
+    /// Displacement and stress at a point of the body, given before it deforms; none where the body is not, or has no volume.
+    fn at(&self, _state: &BodyState, _x: &Point<3>) -> Option<PointValues> {
+        None
+    }
+
     /// Where the material itself is not stable in a state: none where it is everywhere.
     fn unstable_material(&self, _state: &BodyState) -> Option<UnstableMaterial> {
         None
     }
+}
+
+/// A point of a body in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointValues {
+    pub displacement: Vector<3>,
+    /// Equivalent stress.
+    pub von_mises: f64,
 }
 
 /// A point of which the material softens.

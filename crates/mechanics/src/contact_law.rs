@@ -55,6 +55,7 @@ struct Stated {
     friction: Option<Box<dyn Law>>,
     enforcement: Enforcement,
     softness: f64,
+    stiffness: Vec<f64>,
 }
 
 /// What a point remembers beside its traction.
@@ -388,7 +389,13 @@ impl ContactLaw {
             self.enforcement = Enforcement::Penalty { wanted_penetration: None };
             self.softness = self.enforcement.softness();
         }
-        self.stated = Some(Stated { friction, enforcement, softness });
+        self.stated = Some(Stated { friction, enforcement, softness, stiffness: self.stiffness.clone() });
+    }
+
+    /// Until [`restore`](ContactLaw::restore): each point gives way by this force per penetration, a function of its gap alone.
+    pub(crate) fn give_way(&mut self, force_per_gap: f64) {
+        self.softness = 1.0;
+        self.stiffness.iter_mut().zip(&self.areas).for_each(|(c, area)| *c = force_per_gap / area);
     }
 
     /// Ends what [`simplify`](ContactLaw::simplify) began.
@@ -397,6 +404,6 @@ impl ContactLaw {
         if stated.friction.is_some() {
             self.friction = stated.friction;
         }
-        (self.enforcement, self.softness) = (stated.enforcement, stated.softness);
+        (self.enforcement, self.softness, self.stiffness) = (stated.enforcement, stated.softness, stated.stiffness);
     }
 }

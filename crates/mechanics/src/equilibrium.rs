@@ -27,6 +27,8 @@ const SLACK: f64 = 1e-8;
 /// are thousands of times too large.
 const PATIENCE: usize = 12;
 const MOST_ITERATIONS: usize = 60;
+/// Down an energy that is convex each step leads nearer, however small what is ahead lets it be.
+const MOST_DOWN: usize = 400;
 /// Stiffness against what nothing moves, relative to the largest: Newton's method errs by so much of a step.
 const GRAIN: f64 = 1e-12;
 
@@ -107,13 +109,14 @@ impl Problem<'_> {
         // What leaves an unstable state turns by more than it bends: its residual rises before it falls, too.
         // Nor does anything that contact could change call for short steps where there is none.
         let whole = predicts || is_stiff || !self.metric.is_empty() || self.system.contacts.is_empty();
+        let most_iterations = if self.way == Way::Down { MOST_DOWN } else { MOST_ITERATIONS };
         let search = match self.way {
             Way::Down => Search::Energy,
             Way::Whole => Search::Watchdog { patience: PATIENCE },
             Way::ByBodies if whole => Search::Watchdog { patience: PATIENCE },
             Way::ByBodies => Search::Monotone,
         };
-        Newton { most_iterations: MOST_ITERATIONS, search }
+        Newton { most_iterations, search }
     }
 
     /// What Newton's method found, if it is near enough, or why it found nothing.

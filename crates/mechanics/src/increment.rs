@@ -295,6 +295,12 @@ impl System {
                 return found;
             }
         }
+        if let Some(beside) = self.drawn_tight(start, time, solved, report)? {
+            match self.by(Strategy::Straight, &beside, time, solved, report) {
+                Err(error) if is_curable(&error) => {}
+                found => return found,
+            }
+        }
         if self
             .bodies
             .iter()

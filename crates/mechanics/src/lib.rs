@@ -36,6 +36,7 @@ pub mod contact_law;
 pub mod curve;
 mod density;
 mod divided;
+mod drawn_tight;
 pub mod dynamics;
 mod eliminated;
 mod energy_in_time;
@@ -84,7 +85,7 @@ pub use arc_length::{Path, PathIncrement};
 pub use axes::Axes;
 pub use body::{
     Body, BodyError, BodyFields, BodyState, BoxOfMaterial, Constitution, Constraint, ContactSides, Contribution,
-    Elimination, Hold, Kinematics, Load, Means, PlaceError, Samples, Slack, UnstableMaterial,
+    Elimination, Hold, Kinematics, Load, Means, PlaceError, PointValues, Samples, Slack, UnstableMaterial,
 };
 pub use contact::{Contact, Pairing, SiteMemory};
 pub use contact_law::ContactLaw;

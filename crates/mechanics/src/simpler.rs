@@ -1,4 +1,4 @@
-//! The friction of a contact while a start is looked for: without a limit where that is asked for.
+//! The friction of a contact while a start is looked for: without a limit, or none, where that is asked for.
 
 use signorini_contact::Law;
 use signorini_contact::law::{Friction, stuck};
@@ -10,6 +10,8 @@ pub enum SimplerFriction {
     Stated,
     /// All that touches sticks: while nothing carries yet, nothing would rub.
     Sticks,
+    /// Nothing rubs.
+    Smooth,
 }
 
 impl SimplerFriction {
@@ -21,6 +23,7 @@ impl SimplerFriction {
                 let law = law.as_mut().filter(|law| !law.is_compliant())?;
                 Some(std::mem::replace(law, Box::new(Sticks)))
             }
+            Self::Smooth => Some(std::mem::replace(law.as_mut()?, Box::new(Smooth))),
         }
     }
 }
@@ -40,5 +43,23 @@ impl Law for Sticks {
 
     fn per_pressure(&self) -> Option<[f64; 2]> {
         None
+    }
+}
+
+/// No friction at all.
+#[derive(Debug)]
+struct Smooth;
+
+impl Law for Smooth {
+    fn friction(&self, _: [f64; 2], _: f64) -> Friction {
+        Friction { traction: [0.0; 2], by_trial: [[0.0; 2]; 2], by_pressure: [0.0; 2], slips: true }
+    }
+
+    fn utilisation(&self, _: [f64; 2], _: f64) -> f64 {
+        1.0
+    }
+
+    fn per_pressure(&self) -> Option<[f64; 2]> {
+        Some([0.0; 2])
     }
 }

@@ -24,8 +24,8 @@ const LEFT: f64 = 0.5;
 const LEAST_LEFT: f64 = 0.1;
 const LAST: f64 = 1e-3;
 /// Stiffness of ropes at first, relative to all that acts, and how it grows.
-const SOFT: f64 = 20.0;
-const STIFFER: f64 = 10.0;
+pub(crate) const SOFT: f64 = 20.0;
+pub(crate) const STIFFER: f64 = 10.0;
 const LEAST_STIFFER: f64 = 1.1;
 /// Steps so short that there is no way on.
 const MOST_LEFT: f64 = 0.97;

@@ -4,6 +4,7 @@
 //! tangent are integrated from a [`StressLaw`], with the same projection of the dilatation where low degrees or a material
 //! that hardly compresses would lock. Contact is tested and met where the body is now, also at small strain.
 
+mod at_point;
 mod axes;
 mod border;
 mod cells;

@@ -2,16 +2,20 @@
 
 use super::CellSolid;
 use crate::fields::PointState;
+use crate::shapes::spatial;
 use crate::stress_fit::Fit;
 use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
 use signorini_geometry::{Point, Vector};
 use signorini_material::law::Plastic;
-use signorini_material::{Space, StrainError, StressLaw};
-use signorini_mechanics::{BodyError, BodyState, Constitution, Contribution, Order, UnstableMaterial};
+use signorini_material::{Space, StrainError, StressLaw, von_mises};
+use signorini_mechanics::{BodyError, BodyState, Constitution, Contribution, Order, PointValues, UnstableMaterial};
 
 /// Lamé's constant over the shear modulus from which a body is nearly incompressible: a Poisson's ratio of 0.49.
 const INCOMPRESSIBLE: f64 = 49.0;
+
+/// Part of a cell beside the material at which a point is on its boundary.
+const BESIDE: f64 = 1e-9;
 
 /// Stress and plastic strain of the cells of a law with history, as polynomials.
 pub(super) struct Fitted<const D: usize>(Vec<(Fit<D>, DMatrix<f64>)>);
@@ -129,6 +133,21 @@ impl<const D: usize> CellSolid<D> {
 }
 
 impl<const D: usize> Constitution for CellSolid<D> {
+    fn at(&self, state: &BodyState, x: &Point<3>) -> Option<PointValues> {
+        let within = Point::<D>::from_fn(|i, _| x[i]);
+        let cell = self.body.cell_at(&within).filter(|_| spatial(&within) == *x)?;
+        // On the boundary but for rounding.
+        let aside = BESIDE * self.body.bounds_of(cell).size().max();
+        let moved = |k: usize, by: f64| Point::<D>::from_fn(|i, _| within[i] + if i == k { by } else { 0.0 });
+        let near = (0..D).flat_map(|k| [moved(k, aside), moved(k, -aside)]);
+        if !std::iter::once(within).chain(near).any(|p| self.body.region.contains(&p)) {
+            return None;
+        }
+        let found = self.shown_at(self.fitted(state).as_ref(), cell, &within, &state.configuration);
+        let displacement = spatial(&Point::<D>::from(found.displacement));
+        Some(PointValues { displacement, von_mises: von_mises(&found.stress) })
+    }
+
     fn law_name(&self) -> Option<String> {
         Some(self.body.law().name())
     }

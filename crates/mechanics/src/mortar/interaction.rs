@@ -152,6 +152,10 @@ impl Mortar {
             out
         };
         let mut results: Vec<SiteResult> = (0..self.whole.len()).map(of).collect();
+        // Along the normal of the slave the way to a surface that is inclined to it is longer than the distance.
+        for (result, slant) in results.iter_mut().zip(found.sides.slants(&found.measured, self.whole.len())) {
+            result.gap = result.gap.map(|gap| if result.status == Status::Open { gap * slant } else { gap });
+        }
         let law = self.law.friction.as_deref();
         show(&self.nodes, found.sides.slave.faces().0, found.measured.as_ref(), law, &mut results);
         results

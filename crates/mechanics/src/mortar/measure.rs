@@ -55,6 +55,21 @@ impl<'a> Sides<'a> {
         Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction })
     }
 
+    /// The cosine between the normals of both sides, as the mean about each node.
+    pub fn slants(&self, measured: &Measured, nodes: usize) -> Vec<f64> {
+        let Opposite::Surface(master) = &self.master else { return vec![1.0; nodes] };
+        let mut sums = vec![[0.0; 2]; nodes];
+        for (point, met) in measured.points() {
+            let [u, v] = master.point(met.on.patch as usize, &met.on.xi).tangents;
+            let cosine = met.normal.dot(&u.cross(&v).normalize()).abs();
+            for (node, share) in &point.shares {
+                let sum = &mut sums[*node as usize];
+                (sum[0], sum[1]) = (sum[0] + share.abs() * cosine, sum[1] + share.abs());
+            }
+        }
+        sums.into_iter().map(|[sum, all]| if sum > 0.0 { sum / all } else { 1.0 }).collect()
+    }
+
     pub fn facing(&self) -> Facing<'_> {
         let (slave, first) = (self.slave.as_ref(), self.first);
         match &self.master {

@@ -73,6 +73,10 @@ impl<'a> Planner<'a> {
             let mut first_error = None;
             let mut left = Vec::new();
             for (name, value) in open {
+                if let Some(angle) = self.reader.in_degrees(value)? {
+                    self.reader.names.constants.insert(name.clone(), angle);
+                    continue;
+                }
                 match self.reader.any(value, &[]) {
                     Ok((e, _)) => {
                         let v = e.constant().unwrap_or(f64::NAN);

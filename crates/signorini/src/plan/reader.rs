@@ -136,17 +136,24 @@ impl Reader<'_> {
     /// # Errors
     /// Those of [`Self::number`].
     pub fn angle(&self, value: &Value) -> Result<f64, CaseError> {
-        if let Value::Text(text) = value
-            && let Some(number) = text.trim_end().strip_suffix("deg").or_else(|| text.trim_end().strip_suffix('°'))
-        {
-            let finite = number.trim().parse().ok().filter(|degrees: &f64| degrees.is_finite());
-            let degrees = finite.ok_or_else(|| {
+        self.in_degrees(value)?.map_or_else(|| self.number(value, NONE), Ok)
+    }
+
+    /// An angle in degrees, in radians; none of what does not end with that word.
+    ///
+    /// # Errors
+    /// Degrees that are no number.
+    pub fn in_degrees(&self, value: &Value) -> Result<Option<f64>, CaseError> {
+        let Value::Text(text) = value else { return Ok(None) };
+        let text = text.trim_end();
+        let Some(number) = text.strip_suffix("deg").or_else(|| text.strip_suffix('°')) else { return Ok(None) };
+        match number.trim().parse().ok().filter(|degrees: &f64| degrees.is_finite()) {
+            Some(degrees) => Ok(Some(degrees.to_radians())),
+            None => {
                 let message = format!("`{}` is not an angle in degrees", number.trim());
-                self.error(value, message).help("give radians, or for example \"25 deg\"")
-            })?;
-            return Ok(degrees.to_radians());
+                Err(self.error(value, message).help("give radians, or for example \"25 deg\""))
+            }
         }
-        self.number(value, NONE)
     }
 
     /// A value that must be a positive number.

@@ -394,33 +394,6 @@ fn a_mortar_has_an_equation_for_every_node() {
     assert!(number(&last_step(&found)["contacts"]["slide"]["force"][1]) < 0.0);
 }
 
-/// A rope that hangs from one end, laid out along the vertical or across it: nothing holds it across itself before it hangs.
-#[test]
-fn a_rope_hangs_from_one_end() {
-    for end in ["0, 0, -1", "1, 0, 0"] {
-        let case = format!(
-            r#"
-space = "3d"
-units = "m-N-Pa"
-gravity = [0, 0, -9.81]
-[bodies.rope.rope]
-path.points = [[0, 0, 0], [{end}]]
-cells = 20
-stiffness = 1e5
-mass_per_length = 0.1
-[supports.top]
-on = "rope:start"
-displacement = [0, 0, 0]
-"#
-        );
-        let found = summary(&case, &set(&[]));
-        assert_eq!(found["converged"], true, "{}", found["verdict"]);
-        // What the support carries, not the mean of the first cell.
-        let rope = &last_step(&found)["curves"]["rope"];
-        assert!((number(&rope["start_tension"]) / 0.981 - 1.0).abs() < 1e-8, "{rope}");
-    }
-}
-
 /// A cantilever pressed on a cylinder that is much smaller than its cells passes through it between its points: told.
 #[test]
 fn cells_longer_than_what_they_touch_are_told() {

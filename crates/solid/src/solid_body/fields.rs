@@ -21,11 +21,11 @@ struct Division {
 
 /// What is shown of a point.
 #[derive(Clone, Copy)]
-struct Shown {
+pub(super) struct Shown {
     x: Point<3>,
-    displacement: Vector<3>,
+    pub displacement: Vector<3>,
     /// Cauchy stress.
-    stress: Matrix3<f64>,
+    pub stress: Matrix3<f64>,
     /// Equivalent plastic strain; zero of elastic laws.
     plastic_strain: f64,
 }
@@ -73,7 +73,7 @@ impl<const D: usize> SolidBody<D> {
     }
 
     /// Stress and plastic strain of laws with history are known at the quadrature points, and fitted from there to others.
-    fn points_of(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
+    pub(super) fn points_of(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
         if !self.law().has_history() {
             return self.evaluated(cell, table, state);
         }

@@ -9,7 +9,8 @@ use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_material::law::{Plastic, StressLaw};
 use signorini_material::{Elastic, Space};
-use signorini_mechanics::{BodyState, Constitution, UnstableMaterial};
+use signorini_geometry::Point;
+use signorini_mechanics::{BodyState, Constitution, PointValues, UnstableMaterial};
 
 impl<const D: usize> SolidBody<D> {
     /// What the points of a cell of a law with history came to, with their weights; nothing of elastic laws.
@@ -33,6 +34,10 @@ impl<const D: usize> SolidBody<D> {
 const INCOMPRESSIBLE: f64 = 49.0;
 
 impl<const D: usize> Constitution for SolidBody<D> {
+    fn at(&self, state: &BodyState, x: &Point<3>) -> Option<PointValues> {
+        self.state_at_point(state, x)
+    }
+
     fn law_name(&self) -> Option<String> {
         Some(self.law().name())
     }

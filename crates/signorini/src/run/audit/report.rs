@@ -28,6 +28,7 @@ fn within(step: &StepReport, problem: &Problem) -> String {
     let shares: Vec<[f64; 3]> = step
         .contacts
         .values()
+        .filter(|c| c.zones > 0)
         .filter_map(|c| Some(shares(&c.force, c.area, c.max_pressure, &c.error_estimate?)))
         .collect();
     let most = |k: usize| shares.iter().map(|s| s[k]).filter(|s| s.is_finite()).fold(0.0, f64::max);

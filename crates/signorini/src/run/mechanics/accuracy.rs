@@ -7,6 +7,7 @@ use crate::plan::Plan;
 use crate::plan::mechanics::{MechanicsPlan, cells};
 use crate::problem::{Body, Problem, SolidMesh, Space};
 use crate::report::{ErrorEstimate, StepReport};
+use signorini_contact::Status;
 use signorini_mechanics::{IncrementResult, Solved};
 use signorini_solve::{Iteration, Progress};
 
@@ -128,6 +129,23 @@ pub fn estimate(
             let own = ErrorEstimate::of_changes(force.sqrt(), area, pressure);
             found.error_estimate = Some(found.error_estimate.map_or(own, |other| other.larger(&own)));
         }
+    }
+    for (k, contact) in plan.system.contacts.iter().enumerate().filter(|(_, c)| c.as_points().is_some()) {
+        let Ok(sites) = plan.system.sites(k, &model.state) else { continue };
+        let closed = sites.iter().filter(|site| site.status != Status::Open).count();
+        let Some(found) = step.contacts.get_mut(contact.name()) else { continue };
+        if let Some(own) = found.error_estimate.as_mut().filter(|_| closed > 0) {
+            own.area = own.area.max(found.area * edge_of_points(plan.space, closed));
+        }
+    }
+}
+
+/// The part of an area, counted by so many points, that lies within half their distance of its edge: finer cells may by chance
+/// count the same area. Of a disc in space, and of a zone with two ends, or one around an axis.
+fn edge_of_points(space: Space, points: usize) -> f64 {
+    match space {
+        Space::ThreeD => (std::f64::consts::PI / points as f64).sqrt(),
+        _ => 1.0 / points as f64,
     }
 }
 

@@ -12,9 +12,9 @@ use crate::run::contact_verdict::{contact_verdict, sticking};
 use crate::run::mechanics::warnings::most_strained;
 use crate::run::record::Record;
 use signorini_contact::Status;
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 use signorini_mechanics::{
-    AxisChoice, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
+    AxisChoice, BodyState, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
@@ -87,24 +87,7 @@ pub fn step_report(
             add(&mut load_moments, &moment);
         }
     }
-    let probe = |x: &Vector<3>| {
-        let points = shown.bodies.iter().flat_map(|b| {
-            let u = b.array("displacement").unwrap_or_default();
-            let stress = b.array("von_mises");
-            let at = move |(k, (x, u)): (usize, (&[f64; 3], &[f64]))| {
-                (Vector::<3>::from(*x), [u[0], u[1], u[2]], stress.map(|s| s[k]))
-            };
-            b.points.iter().zip(u.chunks(3)).enumerate().map(at)
-        });
-        let nearest = points.min_by(|a, b| (a.0 - x).norm().total_cmp(&(b.0 - x).norm()))?;
-        Some(Probe {
-            at: vector(&nearest.0),
-            displacement: nearest.1,
-            in_contact: None,
-            pressure: None,
-            von_mises: nearest.2,
-        })
-    };
+    let probe = |x: &Point<3>| probed(system, &state.bodies, shown, x);
     let poses = system.bodies.iter().zip(&plan.kinds).zip(&state.bodies).filter_map(|((body, kind), state)| {
         let Kind::Rigid { centre, is_free: true, .. } = kind else { return None };
         let pose = rigid_body::Pose::of(state);
@@ -336,7 +319,7 @@ fn rope_limits((contact, tested): (&dyn Interaction, &ContactInfo), sites: &[Sit
     let [low, high] = found.log_ratio.map(f64::exp);
     let sideways = if tan_alpha > lateral { "slides sideways" } else { "is closest to sliding sideways" };
     let verdict = format!(
-        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it admits T₁/T₀ from \
+        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it, without weight, admits T₁/T₀ from \
          {low:.4} to {high:.4}",
         found.steepest.s
     );
@@ -405,4 +388,28 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
         list.push("The bodies are in equilibrium".into());
     }
     format!("{}; forces balance to {balance:.0e}.", list.join("; "))
+}
+
+/// What is known of a point of a body: where no body has values at any point, those of the nearest point that is shown.
+fn probed(system: &System, states: &[BodyState], shown: &SystemShown, x: &Point<3>) -> Option<Probe> {
+    let probe = |at: Point<3>, displacement: [f64; 3], von_mises: Option<f64>| Probe {
+        at: vector(&at),
+        displacement,
+        in_contact: None,
+        pressure: None,
+        von_mises,
+    };
+    if let Some(found) = system.bodies.iter().zip(states).find_map(|(body, state)| body.at(state, x)) {
+        return Some(probe(*x, vector(&found.displacement), Some(found.von_mises)));
+    }
+    let points = shown.bodies.iter().flat_map(|b| {
+        let u = b.array("displacement").unwrap_or_default();
+        let stress = b.array("von_mises");
+        let at = move |(k, (x, u)): (usize, (&[f64; 3], &[f64]))| {
+            (Point::<3>::from(*x), [u[0], u[1], u[2]], stress.map(|s| s[k]))
+        };
+        b.points.iter().zip(u.chunks(3)).enumerate().map(at)
+    });
+    let nearest = points.min_by(|a, b| (a.0 - x).norm().total_cmp(&(b.0 - x).norm()))?;
+    Some(probe(nearest.0, nearest.1, nearest.2))
 }

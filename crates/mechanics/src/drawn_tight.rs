@@ -1,0 +1,91 @@
+//! Ropes beside what they come to lie on.
+//!
+//! A rope that hardly stretches moves along what it lies on as a whole. Newton's method opens or closes all points at once there,
+//! by steps as long as the rope. The energy leads to the state: at first ropes stretch by a part of their length, what they touch
+//! gives way, without friction, and each step goes down the energy, which is convex but for the shape of what is touched. Then
+//! ropes become as stiff as they are, and contacts stiffer, step by step. What is left of penetration is then so little that
+//! Newton's method finds the state itself, with multipliers and friction.
+
+use crate::equilibrium::Way;
+use crate::increment_error::IncrementError;
+use crate::linear_solver::Solved;
+use crate::points::Order;
+use crate::simpler::SimplerFriction;
+use crate::slack::{SOFT, STIFFER};
+use crate::system::{System, SystemState};
+
+/// Force of contact per penetration, in all that acts per size: what is touched gives way by a hundredth of the size at first,
+/// and in the end by less than the sagitta of the chord of a cell, beside which Newton's method finds nothing.
+const FIRST_SCALE: f64 = 1e2;
+const LAST_SCALE: f64 = 1e5;
+/// Springs to where the step began, in all that acts per size: what carries nothing stays there.
+const SPRINGS: f64 = 1e-3;
+
+impl System {
+    /// A state near equilibrium, with multipliers that bear what acts, of ropes that touch something; none where there are no
+    /// such ropes, a contact is not of points of its own, or none is found.
+    ///
+    /// # Errors
+    /// An interruption.
+    pub(crate) fn drawn_tight(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<Option<SystemState>, IncrementError> {
+        let stiffest = self.bodies.iter_mut().map(|body| body.soften(1.0)).fold(0.0, f64::max);
+        let are_points = self.contacts.iter().all(|contact| contact.as_points().is_some());
+        if stiffest == 0.0 || self.contacts.is_empty() || !are_points || self.step.is_some() {
+            return Ok(None);
+        }
+        let found = self.down_to_rest(start, time, stiffest, solved, report);
+        self.bodies.iter_mut().for_each(|body| _ = body.soften(1.0));
+        self.contacts.iter_mut().for_each(|contact| contact.law_mut().restore());
+        match found {
+            Ok(state) => Ok(Some(state)),
+            Err(IncrementError::Interrupted) => Err(IncrementError::Interrupted),
+            Err(_) => Ok(None),
+        }
+    }
+
+    fn down_to_rest(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        stiffest: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<SystemState, IncrementError> {
+        let (_, count) = self.numbering();
+        let mut at = self.assemble(start, time, Order::First)?;
+        at.single.iter().for_each(|h| at.residual[h.constraint.terms[0].0 as usize] = 0.0);
+        let out_of_balance: f64 = at.residual[..count].iter().map(|r| r.abs()).sum();
+        let acts = at.sizes[..count].iter().fold(out_of_balance, |most, size| most.max(*size));
+        let per_size = acts / self.size();
+        let mut state = start.clone();
+        let (mut share, mut scale) = ((SOFT * acts / stiffest).min(1.0), FIRST_SCALE);
+        loop {
+            self.bodies.iter_mut().for_each(|body| _ = body.soften(share));
+            self.contacts.iter_mut().for_each(|contact| {
+                let law = contact.law_mut();
+                law.restore();
+                law.simplify(SimplerFriction::Smooth);
+                law.give_way(scale * per_size);
+            });
+            let mut problem = self.problem(&state, time, *solved)?;
+            problem.way = Way::Down;
+            let found = problem.held_step(SPRINGS * per_size, &state, report)?;
+            *solved = problem.solved;
+            state = found.state;
+            if share < 1.0 {
+                share = (share * STIFFER).min(1.0);
+            } else if scale < LAST_SCALE {
+                scale *= STIFFER;
+            } else {
+                state.travel.clone_from(&start.travel);
+                return Ok(state);
+            }
+        }
+    }
+}

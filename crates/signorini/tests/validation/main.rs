@@ -28,6 +28,7 @@ mod published;
 mod refinement;
 mod resume;
 mod rigid_bodies;
+mod rigid_boxes;
 mod rigid_dynamics;
 mod scenes;
 mod schema;

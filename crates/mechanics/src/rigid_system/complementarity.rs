@@ -128,7 +128,7 @@ impl Complementarity<'_> {
         let mut before = f64::INFINITY;
         for _ in 0..MOST_PROXIMAL {
             let direct = self.proximal(compliance, &centre, |inner| inner.newton(&initial_multipliers));
-            let found = match direct.or_else(|| self.proximal(compliance, &centre, Inner::from_inside)) {
+            let found = match direct.or_else(|| self.proximal(compliance, &centre, |inner| inner.by_interior_point())) {
                 Some(found) => found,
                 None => {
                     let near = self.soften_first([compliance, mean], &initial_multipliers)?;
@@ -192,8 +192,8 @@ struct Inner<'a> {
 }
 
 impl Inner<'_> {
-    /// By an interior point method first.
-    fn from_inside(&self) -> Option<DVector<f64>> {
+    /// Newton's method from what an interior point method finds.
+    fn by_interior_point(&self) -> Option<DVector<f64>> {
         let near = interior(self.blocks, self.w, &(self.q - self.w * self.known))?;
         self.newton(&near)
     }

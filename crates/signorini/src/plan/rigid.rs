@@ -376,7 +376,7 @@ impl Planner<'_> {
         }
         let [low, high] = [&key.min, &key.max].map(|list| self.reader.numbers::<D>(list, LENGTH));
         let (low, high) = (low?, high?);
-        if let Some(k) = (0..D).find(|k| !(low[*k] < high[*k])) {
+        if let Some(k) = (0..D).find(|k| low[*k] >= high[*k]) {
             let axis = ["x", "y", "z"][k];
             return Err(problem
                 .error(&key.max, format!("the box ends at {axis} = {} and begins at {axis} = {}", high[k], low[k]))

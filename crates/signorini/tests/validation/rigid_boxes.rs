@@ -73,7 +73,8 @@ dynamics = {}
     assert!(found.message.contains("not round about the axis"), "{}", found.message);
 }
 
-/// The uppermost of three boxes topples about an edge of the next one, which stays: its energy is that of its fall.
+/// The uppermost of three boxes topples about an edge of the next one, which stays but for the error of the increments: its energy
+/// is that of its fall.
 #[test]
 fn a_stack_topples() {
     let case = |offset: f64, to: f64, increments: usize| {
@@ -112,7 +113,7 @@ dynamics = {{}}
     assert!(turned > 0.1, "{turned}");
     close(&step["kinetic_energy"], 4.8 * 9.81 * fall, 1e-4);
     for body in ["low", "middle"] {
-        assert!(vector(&step["free_bodies"][body]["displacement"]).norm() < 1e-12);
+        assert!(vector(&step["free_bodies"][body]["displacement"]).norm() < 1e-6);
     }
 }
 
@@ -156,7 +157,7 @@ dynamics = {{ tolerance = {tolerance:e} }}
         )
     };
     let energy = (across * beside * beside + about * spin * spin).sqrt();
-    let errors = [1e-2, 1e-3, 1e-4].map(|tolerance| {
+    let errors = [1e-3, 1e-4, 1e-5].map(|tolerance| {
         let found = summary(&case(tolerance), &set(&[]));
         let turned = nalgebra::Rotation3::new(vector(&last_step(&found)["free_bodies"]["top"]["rotation"]));
         let error = (turned * Vector::<3>::z() - exact).norm() * across.sqrt();

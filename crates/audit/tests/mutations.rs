@@ -578,7 +578,12 @@ fn worn_surfaces_take_the_work_of_what_sinks() {
 fn what_goes_round_an_end_does_not_go_through() {
     let plate = Block::new(v(-1.0, 0.0, 0.0), v(2.0, 0.02, 2.0), Matrix::<3>::identity()).unwrap();
     let disc = Sphere { center: Point::<3>::zeros(), radius: 1e-3 };
-    let state = |x: f64, y: f64| State { bodies: vec![moved(x, y), moved(0.0, 0.0)], ..State::default() };
+    let state = |x: f64, y: f64| State {
+        bodies: vec![moved(x, y), moved(0.0, 0.0)],
+        contacts: vec![Vec::new()],
+        dissipated: vec![None],
+        ..State::default()
+    };
     let setting = Setting {
         space: Space::Plane,
         bodies: vec![rigid("disc", disc, true, 2e-3), rigid("plate", plate, false, 2.0)],

@@ -16,8 +16,23 @@ const STEPS: usize = 16;
 /// Part of the way that a place may be off by rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Checks the way from one state to the next.
+/// Checks the way from one state to the next: of each contact what is found first.
 pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
+    let mut states: Vec<&[Placement]> = vec![&before.bodies];
+    states.extend(now.way.iter().map(Vec::as_slice));
+    states.push(&now.bodies);
+    let mut out: Vec<Finding> = Vec::new();
+    for pair in states.windows(2) {
+        let found = between(setting, [pair[0], pair[1]]);
+        let is_new = |new: &Finding| out.iter().all(|f| f.message != new.message);
+        let new: Vec<Finding> = found.into_iter().filter(is_new).collect();
+        out.extend(new);
+    }
+    out
+}
+
+/// Checks a straight way.
+fn between(setting: &Setting, states: [&[Placement]; 2]) -> Vec<Finding> {
     let mut out = Vec::new();
     for contact in &setting.contacts {
         let [a, b] = contact.bodies;
@@ -26,16 +41,16 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
         }
         for [own, other] in [[a, b], [b, a]] {
             let Form::Rigid(rigid) = &setting.bodies[other].form else { continue };
-            let motions = [before, now].map(|s| s.bodies[other].motion());
+            let motions = states.map(|s| s[other].motion());
             let form = &setting.bodies[own].form;
             // What has no end has no middle.
             if matches!(form, Form::Rigid(rigid) if rigid.size == 0.0) {
                 continue;
             }
-            let places = [before, now].map(|s| middle(form, &s.bodies[own]));
+            let places = states.map(|s| middle(form, &s[own]));
             let names = [own, other].map(|k| &setting.bodies[k].name);
             let remedy = "use more increments";
-            let crossed = points_through(form, rigid, &motions, [before, now].map(|s| &s.bodies[own]));
+            let crossed = points_through(form, rigid, &motions, states.map(|s| &s[own]));
             let is_full = matches!(form, Form::Rigid(own) if !own.balls.is_empty());
             // What is hollow may move along both sides of something, with its middle through it.
             if let Some(x) = through(rigid, &motions, places).filter(|_| is_full || crossed.is_some()) {

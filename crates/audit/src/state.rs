@@ -202,6 +202,8 @@ pub enum Law {
 pub struct State {
     pub time: f64,
     pub bodies: Vec<Placement>,
+    /// Where the bodies were on their way to it, in states between which they moved straight on.
+    pub way: Vec<Vec<Placement>>,
     /// Places of each contact that are tested.
     pub contacts: Vec<Vec<Touch>>,
     pub forces: Vec<Acting>,

@@ -5,8 +5,8 @@ use signorini_audit::{
     Stability, State, Surfaces, Touch, Verdict, audit, gaps,
 };
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::rigid_shape::{Cylinder, Plane, RigidShape, Sphere};
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::rigid_shape::{Block, Cylinder, Plane, RigidShape, Sphere};
+use signorini_geometry::{Matrix, Point, Vector};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ fn disc() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(0.0)],
         dissipated_in_bodies: 0.0,
-        in_motion: false,
+        ..State::default()
     };
     Case { setting, before: State { time: 1.0, ..now.clone() }, now, stability: Stability::NotTested }
 }
@@ -138,7 +138,7 @@ fn block() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(MU * way)],
         dissipated_in_bodies: 0.0,
-        in_motion: false,
+        ..State::default()
     };
     let (before, now) = (state(0.0, 1.0), state(way, 2.0));
     let body = Body { name: "block".into(), form: Form::Solid(solid.clone()), rounding: 0.0 };
@@ -207,7 +207,7 @@ fn rope() -> Case {
         stored: Some(0.0),
         dissipated: vec![Some(dissipated)],
         dissipated_in_bodies: 0.0,
-        in_motion: false,
+        ..State::default()
     };
     let drum = Cylinder { point: Point::<3>::zeros(), axis: Vector::<3>::z(), radius: 1.0 };
     let setting = Setting {
@@ -605,4 +605,30 @@ fn worn_surfaces_take_the_work_of_what_sinks() {
         found.into_iter().any(|f| f.outcome != signorini_audit::Outcome::Fine)
     };
     assert!(!lost(0.1) && lost(0.0));
+}
+
+/// A point that goes round the end of a plate is on its other side afterwards, and went through nothing: its way tells.
+#[test]
+fn what_goes_round_an_end_does_not_go_through() {
+    let plate = Block::new(v(-1.0, 0.0, 0.0), v(2.0, 0.02, 2.0), Matrix::<3>::identity()).unwrap();
+    let disc = Sphere { center: Point::<3>::zeros(), radius: 1e-3 };
+    let state = |x: f64, y: f64| State {
+        bodies: vec![moved(x, y), moved(0.0, 0.0)],
+        contacts: vec![Vec::new()],
+        dissipated: vec![None],
+        ..State::default()
+    };
+    let setting = Setting {
+        space: Space::Plane,
+        bodies: vec![rigid("disc", disc, true, 2e-3), rigid("plate", plate, false, 2.0)],
+        contacts: vec![contact(Carries::Force, None)],
+    };
+    let told = |way: Vec<Vec<Placement>>| {
+        let now = State { way, ..state(-0.02, -0.03) };
+        let findings = audit(&setting, Some(&state(-0.02, 0.03)), &now, &Stability::NotTested);
+        findings.iter().any(|f| f.message.contains("passed"))
+    };
+    assert!(told(Vec::new()));
+    assert!(told(vec![vec![moved(-0.03, 0.02), moved(0.0, 0.0)]]));
+    assert!(!told([(0.02, 0.03), (0.02, -0.03)].map(|(x, y)| vec![moved(x, y), moved(0.0, 0.0)]).to_vec()));
 }

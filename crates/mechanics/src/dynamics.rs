@@ -66,6 +66,8 @@ pub struct Dynamics {
     pub spectral_radius: f64,
     /// Damping by mass (one over a time) and stiffness (a time) after Rayleigh.
     pub damping: [f64; 2],
+    /// Whether the error in time of rigid bodies is asked for, which costs two more solutions; that of others is always known.
+    pub tells_error: bool,
 }
 
 /// What a body resists to acceleration.
@@ -109,7 +111,7 @@ pub struct Moved {
     /// Energy that contact gave as it closed or opened, and that could not be taken back: of an increment that is too long for it.
     pub by_contact: f64,
     /// Error that the method added to displacements, per time, in the norm of the mass: the root of twice an energy (Zienkiewicz
-    /// and Xie 1991).
+    /// and Xie 1991); of rigid bodies by halves of the increment, where it is asked for.
     pub error: f64,
 }
 

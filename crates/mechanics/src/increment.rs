@@ -3,7 +3,7 @@
 //! `equilibrium` solves the equations as they stand; where that fails `homotopy` looks for another way to the same state.
 //! About both run the outer iterations of `augmentation`.
 
-use crate::body::UnstableMaterial;
+use crate::body::{BodyState, UnstableMaterial};
 use crate::dynamics::Moved;
 use crate::equilibrium::{Problem, Way};
 use crate::increment_error::IncrementError;
@@ -24,6 +24,8 @@ pub struct IncrementResult {
     pub iterations: usize,
     /// Residual over what it was to reach, before and after each iteration of the last solve.
     pub history: Vec<f64>,
+    /// Of rigid bodies: states between which they moved straight on.
+    pub way: Vec<Vec<BodyState>>,
     /// By contact.
     pub sites: Vec<Vec<SiteResult>>,
     /// Force and moment (of unknowns that turn) of each support on the bodies.

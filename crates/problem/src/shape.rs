@@ -18,6 +18,8 @@ pub enum Shape {
     Plane(Plane),
     /// A sphere; a circle in the plane.
     Sphere(Sphere),
+    /// A box with flat sides, edges and corners; a rectangle in the plane.
+    Box(BoxShape),
     /// An infinite circular cylinder.
     Cylinder(Cylinder),
     /// An infinite circular cone.
@@ -174,6 +176,17 @@ impl ClosedForm for Sphere {
     fn read(&self, reader: &dyn ShapeReader, _: &Shape) -> Result<Arc<dyn RigidShape>, CaseError> {
         Ok(Arc::new(rigid_shape::Sphere { center: reader.place(&self.center)?, radius: reader.length(&self.radius)? }))
     }
+}
+
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxShape {
+    /// Lower corner before the rotation, lengths.
+    pub min: List<Value>,
+    /// Upper corner before the rotation, lengths.
+    pub max: List<Value>,
+    /// Rotation vector in radians about the middle of the box; one angle in the plane. None if left out.
+    pub rotate: Option<Components>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 60] = [
+pub const GALLERY: [Example; 62] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -79,6 +79,8 @@ pub const GALLERY: [Example; 60] = [
     example!("dice", "a die is thrown: impacts, friction, and rest on a face"),
     example!("duels", "blades strike each other by points, edges and flats: each of the six pairs in turn"),
     example!("arch", "an arch of 25 stones stands by friction and its weight"),
+    example!("cards", "a house of seven cards stands by friction and its weight"),
+    example!("tippe_top", "a spun top turns over and stands on its head, by friction"),
 ];
 
 /// A file that a case of the gallery names.

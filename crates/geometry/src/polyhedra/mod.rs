@@ -13,6 +13,7 @@
 //! facet of the other, and crossings of edges.
 
 mod meeting;
+mod prism;
 mod separation;
 #[cfg(test)]
 mod tests;
@@ -78,13 +79,14 @@ pub struct Features {
     facets: Vec<Facet>,
     edges: Vec<Edge>,
     corners: Vec<Corner>,
-    /// Of each triangle the facet, of each edge and vertex of the mesh the feature if it is one.
-    facet_of: Vec<usize>,
+    /// Of each triangle, edge and vertex of the mesh the feature if it is one.
+    facet_of: Vec<Option<usize>>,
     edge_of: Vec<Option<usize>>,
     corner_of: Vec<Option<usize>>,
     width: f64,
     middle: Point<3>,
     radius: f64,
+    is_flat: bool,
 }
 
 impl Features {
@@ -131,7 +133,7 @@ impl Features {
                 largest[number] = size;
                 facets[number] = Facet { point: mesh.corners(k)[0], normal: normals[k] };
             }
-            facet_of.push(number);
+            facet_of.push(Some(number));
         }
         let mut out = Features {
             facets,
@@ -143,15 +145,17 @@ impl Features {
             width: 2.0 * MassProperties::polyhedron(&mesh).volume / (0..count).map(|k| area(k).norm()).sum::<f64>(),
             middle: mesh.bounds().center(),
             radius: 0.5 * mesh.size(),
+            is_flat: false,
             mesh,
         };
         let mut ends: Vec<(u32, usize)> = Vec::new();
         for (number, pair) in beside.iter().enumerate() {
             let [(a, side), (b, _)] = pair[..] else { return None };
-            let of = [out.facet_of[a], out.facet_of[b]];
-            if of[0] == of[1] {
+            let [Some(of_a), Some(of_b)] = [out.facet_of[a], out.facet_of[b]] else { continue };
+            if of_a == of_b {
                 continue;
             }
+            let of = [of_a, of_b];
             let [i, j] = [[0, 1], [0, 2], [1, 2]][side].map(|i: usize| out.mesh.triangles()[a][i]);
             let [p, q] = [i, j].map(|v| out.mesh.vertices()[v as usize]);
             let Some(along) = (q - p).try_normalize(0.0) else { continue };
@@ -229,6 +233,11 @@ impl Features {
         self.radius
     }
 
+    /// Whether it is a prism that stands for a polygon in the plane.
+    pub fn is_flat(&self) -> bool {
+        self.is_flat
+    }
+
     /// How many features there are.
     pub fn count(&self) -> usize {
         self.facets.len() + self.edges.len() + self.corners.len()
@@ -268,7 +277,7 @@ impl Features {
         let foot = self.mesh.closest(x, 0.0).into_iter().next()?;
         let gap = foot.gap?;
         let [a, b, c] = self.mesh.triangles()[foot.triangle];
-        let facet = Feature::Facet(self.facet_of[foot.triangle]);
+        let facet = self.facet_of[foot.triangle].map(Feature::Facet);
         let corner = |v: u32| {
             let near = (self.mesh.vertices()[v as usize] - foot.point).norm() <= snap;
             self.corner_of[v as usize].filter(|_| near).map(Feature::Corner)
@@ -281,6 +290,6 @@ impl Features {
         };
         let on_corner = [a, b, c].into_iter().find_map(corner);
         let on = on_corner.or_else(|| self.mesh.edges(foot.triangle).into_iter().find_map(edge));
-        Some((on.unwrap_or(facet), gap))
+        Some((on.or(facet)?, gap))
     }
 }

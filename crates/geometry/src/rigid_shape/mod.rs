@@ -17,6 +17,7 @@
 //! Where a shape has no tangent plane (on an axis, at an apex) the normal is one of those that it has beside that place,
 //! and infinite curvatures are left out.
 
+mod block;
 mod closest_points;
 mod cone;
 mod cylinder;
@@ -33,6 +34,7 @@ mod sphere;
 mod testing;
 mod torus;
 
+pub use block::Block;
 pub use closest_points::{ClosestPoints, Normals};
 pub use cone::Cone;
 pub use cylinder::Cylinder;

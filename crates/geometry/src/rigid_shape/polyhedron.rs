@@ -19,6 +19,12 @@ impl Polyhedron {
         let features = Features::new(mesh.clone())?;
         Some(Polyhedron { surface: ClosestPoints { shape: mesh.into(), normals: Normals::Outward }, features })
     }
+
+    /// The body within an upright prism, for contact in the plane `z = 0`, which it has to cross; none if the mesh is not closed.
+    pub fn prism(mesh: TriangleMesh) -> Option<Self> {
+        let features = Features::of_prism(mesh.clone())?;
+        Some(Polyhedron { surface: ClosestPoints { shape: mesh.into(), normals: Normals::Outward }, features })
+    }
 }
 
 impl RigidShape for Polyhedron {

@@ -6,11 +6,13 @@
 //! | `u = W (r - r_0) + q` | gap, and slip against the axes, that they leave; `W` is the compliance of the bodies (Delassus), and `q` what the forces `r_0` leave |
 //! | `r = Π(r - ρ u)` | contact and friction, with the projection `Π` of the law (Alart & Curnier 1991) |
 //!
-//! Newton's method with the generalised derivative of `Π` finds them; where it does not, sweeps over the contacts, each solved for
-//! itself, come nearer (after the nonlinear Gauss-Seidel method of Jean 1999). Forces that are not unique, as those of a stack of many contacts, are those that
+//! Newton's method with the generalised derivative of `Π` finds them, from the known ones or from what an interior point method
+//! finds ([`interior`]). Laws whose forces are in no cone have none; for them sweeps over the contacts, each solved for itself, come
+//! nearer (after the nonlinear Gauss-Seidel method of Jean 1999). Forces that are not unique, as those of a stack of many contacts, are those that
 //! a small compliance of all contacts alike would leave: the least of all in the sum of squares. That compliance is taken
 //! back by a proximal iteration (Rockafellar 1976), so that nothing is left of it.
 
+use super::interior::interior;
 use nalgebra::{DMatrix, DVector};
 use signorini_contact::Law;
 use signorini_solve::dense::Lu;
@@ -72,7 +74,7 @@ impl Block<'_> {
 /// The problem: compliance, and what known forces leave: those of the last iterate, so that nothing cancels.
 pub struct Complementarity<'a> {
     pub blocks: Vec<Block<'a>>,
-    /// Symmetric.
+    /// Symmetric but for the change of the contacts in a step.
     pub w: DMatrix<f64>,
     pub q: DVector<f64>,
     pub known: DVector<f64>,
@@ -125,7 +127,8 @@ impl Complementarity<'_> {
         let mut initial_multipliers = self.known.clone();
         let mut before = f64::INFINITY;
         for _ in 0..MOST_PROXIMAL {
-            let found = match self.proximal(compliance, &centre, |inner| inner.newton(&initial_multipliers)) {
+            let direct = self.proximal(compliance, &centre, |inner| inner.newton(&initial_multipliers));
+            let found = match direct.or_else(|| self.proximal(compliance, &centre, |inner| inner.by_interior_point())) {
                 Some(found) => found,
                 None => {
                     let near = self.soften_first([compliance, mean], &initial_multipliers)?;
@@ -189,6 +192,12 @@ struct Inner<'a> {
 }
 
 impl Inner<'_> {
+    /// Newton's method from what an interior point method finds.
+    fn by_interior_point(&self) -> Option<DVector<f64>> {
+        let near = interior(self.blocks, self.w, &(self.q - self.w * self.known))?;
+        self.newton(&near)
+    }
+
     fn solve(&self, start: DVector<f64>) -> Option<DVector<f64>> {
         let mut r = start;
         for _ in 0..MOST_TURNS {

@@ -4,6 +4,7 @@ use super::motion::{FIRST, LONGEST, Motion, SHORTEST, Stepped};
 use super::polyhedra::free_share;
 use super::stability::Leaving;
 use super::touching::{Id, along, twists};
+use crate::body::BodyState;
 use crate::equilibrium::carried_away;
 use crate::free::{AWAY, motion_in_words};
 use crate::increment_error::IncrementError;
@@ -45,6 +46,8 @@ pub struct SoFar {
     pub travel: Vec<f64>,
     pub iterations: usize,
     pub history: Vec<f64>,
+    /// The states between which the bodies moved straight on, without the first and the last.
+    pub way: Vec<Vec<BodyState>>,
     /// Unstable states that were met, and left.
     pub stability: Stability,
 }
@@ -208,6 +211,7 @@ impl<'a, 'b> Increment<'a, 'b> {
 
     /// Takes a step.
     fn take(&mut self, state: &mut SystemState, found: &Stepped<'_>, target: &SystemState) {
+        self.so_far.way.push(state.bodies.clone());
         state.bodies = found.bodies.clone();
         state.time = target.time;
         for (k, _) in self.motion.system.bodies.iter().enumerate().filter(|(_, b)| b.unknowns() == 0) {

@@ -1,7 +1,7 @@
 //! Systems in which all that moves is rigid: contact and friction as a cone complementarity problem.
 //!
 //! - `touching`: points that may touch, their gaps and slips; `polyhedra`: pairs of facets, edges and corners;
-//! - `complementarity`: contact forces of a linearised system;
+//! - `complementarity`: contact forces of a linearised system; `interior`: from where Newton's method finds them;
 //! - `rest`: whether bodies may rest where they are;
 //! - `motion`: implicit steps of an overdamped motion in pseudo-time;
 //! - `stability`: whether the state that they lead to is stable;
@@ -14,6 +14,7 @@
 mod complementarity;
 mod dynamics;
 mod increment;
+mod interior;
 mod motion;
 mod polyhedra;
 mod rest;

@@ -135,6 +135,7 @@ impl<'a> Motion<'a> {
         Ok(IncrementResult {
             iterations: so_far.iterations,
             history: so_far.history.clone(),
+            way: so_far.way.clone(),
             sites: (0..self.contacts.len()).map(|c| self.sites(c, state, (found, so_far))).collect(),
             dissipated: (0..self.contacts.len()).map(|c| so_far.work(c)).collect(),
             support_forces,

@@ -6,8 +6,8 @@ use super::planner::Planner;
 use super::rigid_shape::{self, ShapeKeys};
 use crate::expression::Scope;
 use crate::problem::units::{Dimension, LENGTH, NONE};
+use crate::problem::{BoxShape, Cylinder, Ellipsoid, Motion, Placement, Rigid, Shape, Side, Space};
 use crate::problem::{CaseError, List, Location, Problem, Value};
-use crate::problem::{Cylinder, Ellipsoid, Motion, Placement, Rigid, Shape, Side, Space};
 use crate::queries::geometry;
 use crate::report::{Warning, WarningKind};
 use signorini_geometry::height_field::{self, HeightField};
@@ -15,7 +15,7 @@ use signorini_geometry::implicit::Function;
 use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::rigid_shape::{ClosestPoints, GapJet, Normals, Polyhedron, RigidShape};
+use signorini_geometry::rigid_shape::{Block, ClosestPoints, GapJet, Normals, Polyhedron, RigidShape};
 use signorini_geometry::shape::{Shape as Geometry, ShapeError};
 use signorini_geometry::{Aabb, Jet, Point, Real, Vector};
 use signorini_paths::smooth_mesh::SmoothMesh;
@@ -180,6 +180,7 @@ pub(super) fn read<const D: usize>(
     let [displacement, rotation] = motion::<D>(planner, rigid)?;
     let bounds = match &rigid.shape {
         Shape::LevelSet(key) => Some(Aabb::new(keys.vector(&key.min, LENGTH)?, keys.vector(&key.max, LENGTH)?)),
+        Shape::Box(_) => shape.bounds(),
         stated => stated.closed_form().and_then(|_| shape.bounds()),
     };
     Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation, bounds })
@@ -242,7 +243,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             .planner
             .problem
             .error(at, format!("a {what} is a shape in space"))
-            .help("in the plane: plane, sphere (a circle), cylinder, ellipsoid (an ellipse)"))
+            .help("in the plane: plane, box (a rectangle), sphere (a circle), cylinder, ellipsoid (an ellipse)"))
     }
 
     /// Shapes round an axis are shapes in space, which in the plane can be that of an axisymmetric problem.
@@ -284,6 +285,7 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
                 self.check_in_space(shape, "triangulated surface")?;
                 polyhedron(planner.surface_of_arrays(key)?)
             }
+            Shape::Box(key) => Arc::new(planner.rigid_box::<D>(shape, key)?),
             Shape::Custom(custom) => Arc::clone(&custom.0),
             Shape::Nurbs(key) => {
                 self.check_in_space(shape, "NURBS surface")?;
@@ -360,6 +362,34 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             }
             _ => return Err(planner.unavailable(shape, "this shape in contact with a solid")),
         })
+    }
+}
+
+impl Planner<'_> {
+    /// A box; a rectangle in the plane.
+    pub(super) fn rigid_box<const D: usize>(&self, shape: &Shape, key: &BoxShape) -> Result<Block, CaseError> {
+        let problem = self.problem;
+        if self.space == Space::Axisymmetric {
+            return Err(problem
+                .error(shape, "a box is not round about the axis")
+                .help("around an axis: plane, sphere, cylinder, torus, or a body of revolution"));
+        }
+        let [low, high] = [&key.min, &key.max].map(|list| self.reader.numbers::<D>(list, LENGTH));
+        let (low, high) = (low?, high?);
+        if let Some(k) = (0..D).find(|k| low[*k] >= high[*k]) {
+            let axis = ["x", "y", "z"][k];
+            return Err(problem
+                .error(&key.max, format!("the box ends at {axis} = {} and begins at {axis} = {}", high[k], low[k]))
+                .help("`max` is larger than `min` along each axis"));
+        }
+        let turn = key.rotate.as_ref().map_or(Ok(Vector::<3>::zeros()), |turn| self.rotation_vector::<D>(turn))?;
+        let along = |by: &dyn Fn(usize) -> f64| Vector::<3>::from_fn(|k, _| if k < D { by(k) } else { 0.0 });
+        let (middle, edges) = (along(&|k| 0.5 * (low[k] + high[k])), along(&|k| high[k] - low[k]));
+        let made = match D {
+            2 => Block::rectangle(middle, [edges[0], edges[1]], turn[2]),
+            _ => Block::new(middle, edges, RigidMotion::new(turn, middle, Vector::<3>::zeros()).rotation),
+        };
+        made.map_err(|error| problem.error(shape, error.to_string()))
     }
 }
 

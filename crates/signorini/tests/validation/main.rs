@@ -29,6 +29,7 @@ mod published;
 mod refinement;
 mod resume;
 mod rigid_bodies;
+mod rigid_boxes;
 mod rigid_dynamics;
 mod ropes_at_rest;
 mod scenes;

@@ -328,7 +328,7 @@ impl<'a, 'b> InTime<'a, 'b> {
 
     /// Takes a step of a duration.
     fn take(&mut self, found: Smooth<'a>, duration: f64, now: &mut InMotion) {
-        now.bodies = found.bodies;
+        self.so_far.way.push(std::mem::replace(&mut now.bodies, found.bodies));
         now.velocities = found.velocities;
         self.so_far.iterations += found.iterations;
         for (own, more) in self.supports.iter_mut().zip(&found.supports) {

@@ -3,11 +3,12 @@
 //! - `masses`: momenta, and velocities by the midpoint rule;
 //! - `driven`: what is prescribed;
 //! - `step`: a step without impacts; `impact`: velocities that change at once;
-//! - `increment`: one after the other, to the end of an increment.
+//! - `increment`: one after the other, to the end of an increment; `error`: what that is wrong by.
 //!
 //! Contact forces are the means of an increment: their impulses over its duration, impacts included.
 
 mod driven;
+mod error;
 mod impact;
 mod increment;
 mod masses;
@@ -18,6 +19,7 @@ use crate::dynamics::Moved;
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
 use crate::system::{System, SystemState};
+use error::error_of_halves;
 use increment::InTime;
 use masses::Masses;
 
@@ -39,8 +41,18 @@ impl System {
         let duration = time - from.time;
         let mut state = SystemState { time, ..from.clone() };
         let mut run = InTime::new(&motion, &masses);
+        let mut error = 0.0;
         if duration > 0.0 {
-            let moved = run.advance(&from, time, report)?;
+            let mut moved = run.advance(&from, time, report)?;
+            if self.dynamics.is_some_and(|dynamics| dynamics.tells_error) {
+                let whole = moved;
+                run = InTime::new(&motion, &masses);
+                let half = from.time + 0.5 * duration;
+                let first = run.advance(&from, half, report)?;
+                let (bodies, velocities) = (first.bodies, first.velocities);
+                moved = run.advance(&SystemState { time: half, bodies, velocities, ..from.clone() }, time, report)?;
+                error = error_of_halves(self, &masses, [&whole.bodies, &moved.bodies]) / duration;
+            }
             (state.bodies, state.velocities) = (moved.bodies, moved.velocities);
         }
         let loaded = run.loaded(&state.bodies, duration);
@@ -52,11 +64,12 @@ impl System {
         let result = IncrementResult {
             iterations: run.so_far.iterations,
             history: run.so_far.history.clone(),
+            way: std::mem::take(&mut run.so_far.way),
             sites: contacts.clone().map(|c| motion.sites(c, &state, (&found, &run.so_far))).collect(),
             support_forces: run.supports.iter().map(|own| own.map(|impulse| impulse * mean)).collect(),
             dissipated: contacts.map(|c| run.so_far.work(c)).collect(),
             unknowns: count,
-            moved: Some(Moved { before, after, inertia, ..Moved::default() }),
+            moved: Some(Moved { before, after, inertia, error, ..Moved::default() }),
             ..IncrementResult::default()
         };
         let memory = motion.memory(&found, &run.so_far);

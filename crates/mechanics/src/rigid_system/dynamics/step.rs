@@ -185,8 +185,9 @@ impl<'a> Motion<'a> {
             for (b, rate) in of_coupled.iter().zip(&coupled_rates) {
                 q[b.first] += rate;
             }
+            // Forces act by the rows of one state, and velocities are those of another one: not quite symmetric. What depends on
+            // each other, as the corners of a facet do, does so in both; their mean would have no solution.
             let w = &speeds * &by_force;
-            let w = (&w + w.transpose()) * 0.5;
             let problem = Complementarity { blocks: blocks.clone(), w, q, known };
             let Some(r) = problem.solve() else { return Ok(None) };
             let moved = alone + by_force * (&r - &problem.known);

@@ -22,7 +22,7 @@ fn mass(mass: f64, inertia: [f64; 3], velocity: Vector<3>, angular_velocity: Vec
 }
 
 pub fn system(bodies: Vec<RigidBody>) -> System {
-    let dynamics = Some(Dynamics { spectral_radius: 1.0, damping: [0.0; 2] });
+    let dynamics = Some(Dynamics { spectral_radius: 1.0, damping: [0.0; 2], tells_error: false });
     let bodies = bodies.into_iter().map(|b| Box::new(b) as _).collect();
     System { bodies, dynamics, ..System::default() }
 }

@@ -36,7 +36,7 @@ fn spinning(duration: f64, dynamics: Dynamics, is_pushed: bool) -> (System, Syst
 
 #[test]
 fn the_tangent_is_that_of_differences() {
-    let dynamics = Dynamics { spectral_radius: 1.0, damping: [0.3, 0.0] };
+    let dynamics = Dynamics { spectral_radius: 1.0, damping: [0.3, 0.0], tells_error: false };
     let (system, start) = spinning(0.4, dynamics, false);
     let at = system.advance(&start, &[0.1, -0.2, 0.3, 0.5, -0.8, 0.6], 1.0);
     let (_, tangent) = assembled(&system, &at, Order::Second).unwrap();
@@ -72,7 +72,8 @@ fn solved(system: &System, start: &SystemState) -> SystemState {
 #[test]
 fn a_free_rotation_keeps_its_angular_momentum_and_energy() {
     const DURATION: f64 = 0.6;
-    let (system, start) = spinning(DURATION, Dynamics { spectral_radius: 1.0, damping: [0.0; 2] }, false);
+    let (system, start) =
+        spinning(DURATION, Dynamics { spectral_radius: 1.0, damping: [0.0; 2], tells_error: false }, false);
     let pose = Pose::of(&solved(&system, &start).bodies[0]);
     let inertia = Matrix::<3>::from_diagonal(&Vector::<3>::from(INERTIA));
     let before = Vector::<3>::from(SPIN);
@@ -88,7 +89,8 @@ fn a_free_rotation_keeps_its_angular_momentum_and_energy() {
 #[test]
 fn loads_change_momenta_by_their_impulse() {
     const DURATION: f64 = 0.1;
-    let (system, start) = spinning(DURATION, Dynamics { spectral_radius: 1.0, damping: [0.0; 2] }, true);
+    let (system, start) =
+        spinning(DURATION, Dynamics { spectral_radius: 1.0, damping: [0.0; 2], tells_error: false }, true);
     let pose = Pose::of(&solved(&system, &start).bodies[0]);
     let moved = v(0.3, -0.2, 0.5) * DURATION + v(1.0, 2.0, 3.0) * (0.5 * DURATION * DURATION / 2.0);
     assert!((pose.centre - v(0.1, 0.2, 0.3) - moved).norm() < 1e-13);

@@ -143,7 +143,9 @@ impl Planner<'_> {
                 if cannot_meet(system, numbers, &on) {
                     return problem
                         .error(key, format!("contact `{name}`: neither of the two rigid bodies has slave points"))
-                        .help("use a sphere or a triangle mesh for one of them, or a solid of a stiff material");
+                        .help(
+                            "use a sphere, a box or a triangle mesh for one of them, or a solid of a stiff material",
+                        );
                 }
                 let side = on.iter().find(|on| on.split(':').next().is_some_and(|name| name.trim() == error.body()));
                 self.misplaced(side.unwrap_or(&on[0]), &error)

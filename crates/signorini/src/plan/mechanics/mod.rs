@@ -272,9 +272,6 @@ impl Planner<'_> {
         if system.contacts.is_empty() && system.constraints.is_empty() && system.bodies.len() > 1 {
             warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
-        if system.is_rigid() && problem.steps.iter().any(|s| s.events.is_some()) {
-            warnings.push("`events` of rigid bodies are not located".into());
-        }
         if arc_lengths.iter().zip(&events).any(|(path, event)| path.is_some() && event.is_some()) {
             warnings.push("`events` are not located along a path by arc length".into());
         }

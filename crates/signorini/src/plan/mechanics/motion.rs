@@ -97,8 +97,7 @@ impl Planner<'_> {
         self.add_gravity(system, wrong)?;
         let dynamics: Vec<Option<Dynamics>> =
             steps.iter().map(|step| self.dynamics(problem.steps.get(*step), system)).collect::<Result<_, _>>()?;
-        let tolerance =
-            steps.iter().map(|step| self.tolerance(problem.steps.get(*step), system)).collect::<Result<_, _>>()?;
+        let tolerance = steps.iter().map(|step| self.tolerance(problem.steps.get(*step))).collect::<Result<_, _>>()?;
         let velocities = if self.moves() { self.velocities(numbers, system, wrong)? } else { Vec::new() };
         Ok(Motion { dynamics, tolerance, velocities })
     }
@@ -150,19 +149,13 @@ impl Planner<'_> {
     }
 
     /// The error in time that the increments of a step may add; none where it is not controlled.
-    fn tolerance(&self, step: Option<&problem::Step>, system: &System) -> Result<Option<f64>, CaseError> {
+    fn tolerance(&self, step: Option<&problem::Step>) -> Result<Option<f64>, CaseError> {
         let Some(stated) = step.and_then(|s| s.dynamics.as_ref()?.tolerance.as_ref()) else { return Ok(None) };
         if !(*stated > 0.0 && *stated < 1.0) {
             return Err(self
                 .problem
                 .error(stated, format!("a tolerance of {stated} is not between 0 and 1"))
                 .help("0.01 is a good start: displacements are right to about a hundredth of the way"));
-        }
-        if system.is_rigid() {
-            return Err(self
-                .problem
-                .error(stated, "the error in time of rigid bodies is not known")
-                .help("leave it out, and compare with twice as many increments"));
         }
         Ok(Some(*stated))
     }
@@ -231,7 +224,7 @@ impl Planner<'_> {
                 return Err(problem.error(value, message).help("damp by `mass`, or by `spectral_radius` below 1"));
             }
         }
-        Ok(Some(Dynamics { spectral_radius, damping }))
+        Ok(Some(Dynamics { spectral_radius, damping, tells_error: key.tolerance.is_some() }))
     }
 
     /// The velocities of all unknowns with which bodies begin to move: the best fit of those that are stated.

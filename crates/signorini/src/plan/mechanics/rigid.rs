@@ -7,7 +7,7 @@ use crate::problem::units::{DENSITY, FREQUENCY, INERTIA, LENGTH, MASS, VELOCITY}
 use crate::problem::{CaseError, Components, FreeMotion, KeyPath, Motion as Stated, Rigid, Shape, Side, Space};
 use signorini_geometry::mass_properties::MassProperties;
 use signorini_geometry::mesh::TriangleMesh;
-use signorini_geometry::rigid_shape::RigidShape;
+use signorini_geometry::rigid_shape::{Block, RigidShape};
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
 use signorini_mechanics::{Motion, RigidBody, RigidMass, RigidSite};
 use std::sync::Arc;
@@ -104,7 +104,7 @@ impl Planner<'_> {
         let unknown = |at: KeyPath| {
             problem
                 .error(&at, format!("volume and moments of inertia of `{name}` are not known for a shape of this kind"))
-                .help("give `mass`, `inertia` and `center` in place of `density`; closed triangle meshes, spheres, ellipsoids, tori and closed bodies of revolution have them")
+                .help("give `mass`, `inertia` and `center` in place of `density`; boxes, closed triangle meshes, spheres, ellipsoids, tori and closed bodies of revolution have them")
         };
         let mass = match (stated, density, &solid) {
             (Some(mass), _, _) => mass,
@@ -205,6 +205,7 @@ impl Planner<'_> {
                 let semi_axes = self.reader.numbers::<2>(&ellipsoid.semi_axes, LENGTH)?;
                 Some(MassProperties::ellipse(shape.centre(), semi_axes))
             }
+            Shape::Box(_) => shape.mass_properties(),
             _ if in_plane => None,
             _ => shape.mass_properties(),
         })
@@ -233,7 +234,8 @@ impl Planner<'_> {
         }
     }
 
-    /// The points of a rigid body that are tested, and its size: a ball at its centre, a triangle mesh at its vertices.
+    /// The points of a rigid body that are tested, and its size: a ball at its centre, a box at its corners, a triangle mesh
+    /// at its vertices.
     fn points_of(&self, key: &Rigid, low: Point<3>, high: Point<3>) -> Result<(Vec<RigidSite>, f64), CaseError> {
         let outside = key.side != Some(Side::Inside);
         Ok(match &key.shape {
@@ -243,12 +245,31 @@ impl Planner<'_> {
                 let site = RigidSite { x, outward: None, radius, weight: 1.0 };
                 (if outside { vec![site] } else { Vec::new() }, 2.0 * radius)
             }
+            Shape::Box(stated) => {
+                let body = match self.space {
+                    Space::ThreeD => self.rigid_box::<3>(&key.shape, stated)?,
+                    _ => self.rigid_box::<2>(&key.shape, stated)?,
+                };
+                of_block(&body, outside)
+            }
             Shape::Stl(file) => of_mesh(&self.closed_mesh(file)?, outside),
             Shape::File(file) => of_mesh(&self.boundary_of_file(file)?, outside),
             Shape::Triangles(arrays) => of_mesh(&self.surface_of_arrays(arrays)?, outside),
             _ => (Vec::new(), (high - low).norm()),
         })
     }
+}
+
+/// Corners, alike, with the direction from the middle.
+fn of_block(body: &Block, outside: bool) -> (Vec<RigidSite>, f64) {
+    let corners = body.corners();
+    let (count, middle) = (corners.len(), body.centre());
+    let site = |x: &Point<3>| {
+        let outward = (x - middle).try_normalize(0.0);
+        RigidSite { x: *x, outward, radius: 0.0, weight: body.surface() / count as f64 }
+    };
+    let size = 2.0 * (corners[0] - middle).norm();
+    (if outside { corners.iter().map(site).collect() } else { Vec::new() }, size)
 }
 
 /// Vertices with their share of the area, and the mean normal of the faces around them.

@@ -102,6 +102,7 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
         reacts: false,
     };
     Some(State {
+        way: Vec::new(),
         time,
         bodies,
         contacts: touches.collect::<Option<Vec<_>>>()?,

@@ -81,6 +81,7 @@ impl SystemAudit {
         let now = State {
             time: step.time,
             bodies,
+            way: result.way.iter().map(|bodies| placements(plan, setting, bodies)).collect(),
             contacts,
             forces,
             // Less what the method still owes of an increment that it could not correct at once.
@@ -95,7 +96,7 @@ impl SystemAudit {
             found.findings.retain(|f| !of_rest.contains(&f.check));
             found.bounds.clear();
         }
-        self.before = Some((now, state.clone()));
+        self.before = Some((State { way: Vec::new(), ..now }, state.clone()));
         self.bounds = found.bounds;
         found.findings
     }

@@ -6,7 +6,7 @@ use super::{Failure, MechanicsModel, recovered, tell_iteration};
 use crate::problem::CaseError;
 use crate::report::{ContactEvent, Reason, Warning, WarningKind};
 use serde::{Deserialize, Serialize};
-use signorini_mechanics::{IncrementError, IncrementResult, Moved, Moving, Stability};
+use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Moved, Moving, Stability};
 use signorini_solve::Progress;
 
 /// Share of an increment below which it is not cut any more.
@@ -72,6 +72,7 @@ pub struct Told {
 struct Total {
     iterations: usize,
     residuals: Vec<f64>,
+    way: Vec<Vec<BodyState>>,
     dissipated: Vec<f64>,
     dissipated_in_bodies: Vec<f64>,
     lost: Option<Stability>,
@@ -83,6 +84,7 @@ impl Total {
     /// Adds a part.
     fn add(&mut self, result: &mut IncrementResult) {
         self.iterations += result.iterations;
+        self.way.append(&mut result.way);
         for (sums, own) in
             [(&mut self.dissipated, &result.dissipated), (&mut self.dissipated_in_bodies, &result.dissipated_in_bodies)]
         {
@@ -105,8 +107,8 @@ impl Total {
 
     /// The increment as a whole, of which the last part is given.
     fn result(self, last: IncrementResult) -> IncrementResult {
-        let Total { iterations, residuals: history, dissipated, dissipated_in_bodies, .. } = self;
-        IncrementResult { iterations, history, dissipated, dissipated_in_bodies, ..last }
+        let Total { iterations, residuals: history, way, dissipated, dissipated_in_bodies, .. } = self;
+        IncrementResult { iterations, history, way, dissipated, dissipated_in_bodies, ..last }
     }
 }
 
@@ -197,6 +199,9 @@ impl MechanicsModel {
                     }
                     if let Err(error) = self.plan.system.accept(&state) {
                         return Ok(Err(self.failed(&error, total.residuals)));
+                    }
+                    if self.plan.system.is_rigid() {
+                        total.way.push(state.bodies.clone());
                     }
                     self.state = state;
                     reached = target;

@@ -62,6 +62,9 @@ pub fn resume(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> 
 pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = Instant::now();
     let mut model = model(problem)?;
+    if let Some(size) = &model.head().size {
+        progress.size(&size.told);
+    }
     let record = record::in_memory(model.head());
     drive(&mut *model, record, 0, start, progress)
 }
@@ -121,7 +124,7 @@ fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
         Plan::Plane(p) => Box::new(p),
         Plan::Mechanics(p) => p,
     };
-    planned.model()
+    processes::all(planned.model())
 }
 
 fn planned(plan: &Plan) -> &dyn Planned {

@@ -11,10 +11,10 @@ use crate::error::CellsError;
 use crate::kept_pieces::{kept_pieces, rules_of_pieces};
 use crate::memory::check_memory;
 use crate::moments::{VolumePoints, box_points};
-use crate::region::{BoundaryPoint, Filling, Integration, MaterialRule, Region};
+use crate::region::{BoundaryPoint, Filling, Integration, Region};
+use crate::rules::rules_of;
 use crate::space::{Mode, Tabulation, tabulate};
 use crate::tree::CellTree;
-use rayon::prelude::*;
 use signorini_geometry::{Aabb, Point};
 use signorini_material::{Elastic, Space};
 use std::sync::Arc;
@@ -49,17 +49,15 @@ impl<const D: usize> CellBody<D> {
         let fits = discretisation.volume_points == VolumePoints::Fitted
             && material.modulus.is_none()
             && material.space != Space::Axisymmetric;
-        let rules_of = |tree: &CellTree<D>| -> Vec<MaterialRule<D>> {
-            let one = |leaf: &crate::tree::Leaf<D>| {
-                let mut rule = region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree);
-                // Points of cells in several pieces tell the pieces apart.
-                if fits && !faces_itself(&rule) {
-                    rule.fit(&leaf.bounds, 2 * discretisation.degree + 1);
-                }
-                rule
-            };
-            tree.leaves().par_iter().map(one).collect()
+        let rule = |leaf: &crate::tree::Leaf<D>| {
+            let mut rule = region.rule(&leaf.bounds, &discretisation.integration, discretisation.degree);
+            // Points of cells in several pieces tell the pieces apart.
+            if fits && !faces_itself(&rule) {
+                rule.fit(&leaf.bounds, 2 * discretisation.degree + 1);
+            }
+            rule
         };
+        let rules_of = |tree: &CellTree<D>| rules_of(tree, discretisation.processes.as_deref(), rule);
         let mut rules = rules_of(&tree);
         for _ in 0..discretisation.refine_narrow {
             let narrow: Vec<bool> = rules.iter().map(is_narrow).collect();

@@ -211,10 +211,11 @@ impl<const D: usize> CellBody<D> {
         box_points(self.bounds_of(cell), self.full_points())
     }
 
-    /// The fictitious stiffness of each cut cell: none of full ones.
-    pub(crate) fn fictitious(&self) -> Vec<Option<DMatrix<f64>>> {
+    /// The fictitious stiffness of those of some cells that are cut: none of full ones.
+    pub(crate) fn fictitious_of(&self, cells: &[usize]) -> Vec<Option<DMatrix<f64>>> {
         let alpha = self.discretisation.fictitious;
-        let of = |number: usize| {
+        let of = |number: &usize| {
+            let number = *number;
             let cell = &self.cells()[number];
             if cell.rule.filling == Filling::Full || alpha == 0.0 {
                 return None;
@@ -238,7 +239,7 @@ impl<const D: usize> CellBody<D> {
             let whole = at.tangent(|q, r, c| weights[q] * hooke[(r, c)]);
             Some((whole - &of_mean) * alpha + of_mean * (alpha - cell.share).max(0.0))
         };
-        (0..self.cells().len()).into_par_iter().map(of).collect()
+        cells.par_iter().map(of).collect()
     }
 
     /// Hooke's law of the typical constants, from displacement gradient to stress.

@@ -63,10 +63,12 @@ const MANY_IN_THE_PLANE: usize = 200_000;
 pub struct CellSolid<const D: usize> {
     name: String,
     body: CellBody<D>,
-    /// Of each cell at rest.
-    stiffness: Vec<Arc<DMatrix<f64>>>,
-    /// Of each cut cell, where the law is not linear: of what is not material.
-    fictitious: Vec<Option<DMatrix<f64>>>,
+    /// The cells whose forces it adds: all, but where other processes have the others.
+    kept: Vec<usize>,
+    /// Of each of these at rest, found as it is asked for.
+    stiffness: OnceLock<Vec<Arc<DMatrix<f64>>>>,
+    /// Of each of these that is cut, where the law is not linear: of what is not material.
+    fictitious: OnceLock<Vec<Option<DMatrix<f64>>>>,
     history: History,
     /// The points of all surfaces.
     points: Vec<Site<D>>,
@@ -89,12 +91,6 @@ impl<const D: usize> CellSolid<D> {
     /// Places without material; a side along an axis that the body does not have.
     pub fn new(name: &str, body: CellBody<D>, places: &BTreeMap<String, Place<D>>) -> Result<Self, CellsError> {
         let is_zero = vanishing(&body);
-        let mut stiffness = body.stiffness();
-        if is_zero.contains(&true) {
-            for (cell, matrix) in stiffness.iter_mut().enumerate() {
-                untie(&body.unknowns_of(cell), &is_zero, Arc::make_mut(matrix));
-            }
-        }
         let whole = Place::boundary(|_| true);
         let mut list: BTreeMap<&str, &Place<D>> = places.iter().map(|(name, place)| (name.as_str(), place)).collect();
         list.entry(BOUNDARY).or_insert(&whole);
@@ -121,14 +117,14 @@ impl<const D: usize> CellSolid<D> {
         let sheets = Sheets::new(&body, &points);
         let linear = LinearFields::new(&body);
         let size = extent(&body);
-        let fictitious = if body.law().is_linear() { Vec::new() } else { body.fictitious() };
         let points_of = |cell: &crate::cell::Cell<D>| body.volume_points(cell).len();
         let history = History::new(body.law(), body.cells().iter().map(points_of));
         Ok(CellSolid {
             name: name.to_string(),
+            kept: (0..body.cells().len()).collect(),
             body,
-            stiffness,
-            fictitious,
+            stiffness: OnceLock::new(),
+            fictitious: OnceLock::new(),
             history,
             points,
             surfaces,
@@ -148,6 +144,22 @@ impl<const D: usize> CellSolid<D> {
 
     fn unsuitable(&self, message: impl Into<String>) -> PlaceError {
         PlaceError::Unsuitable { body: self.name.clone(), message: message.into() }
+    }
+
+    /// The stiffness of the cells of this process.
+    fn stiffness(&self) -> &[Arc<DMatrix<f64>>] {
+        self.stiffness.get_or_init(|| self.stiffness_of(&self.kept))
+    }
+
+    /// The stiffness of some cells, of whichever process.
+    fn stiffness_of(&self, cells: &[usize]) -> Vec<Arc<DMatrix<f64>>> {
+        let mut stiffness = self.body.stiffness_of(cells);
+        if self.is_zero.contains(&true) {
+            for (cell, matrix) in cells.iter().zip(&mut stiffness) {
+                untie(&self.body.unknowns_of(*cell), &self.is_zero, Arc::make_mut(matrix));
+            }
+        }
+        stiffness
     }
 
     /// The unknown of a function in a direction, unless it stays zero.
@@ -277,8 +289,9 @@ impl<const D: usize> Body for CellSolid<D> {
             return self.integrated(state, order, out);
         }
         let u = &state.configuration;
-        let unknowns: Vec<Vec<u32>> = (0..self.stiffness.len()).map(|c| self.body.unknowns_of(c)).collect();
-        let forces: Vec<Vec<f64>> = (unknowns.par_iter().zip(&self.stiffness))
+        let stiffness = self.stiffness();
+        let unknowns: Vec<Vec<u32>> = self.kept.iter().map(|c| self.body.unknowns_of(*c)).collect();
+        let forces: Vec<Vec<f64>> = (unknowns.par_iter().zip(stiffness))
             .map(|(unknowns, k)| {
                 let own = nalgebra::DVector::from_iterator(unknowns.len(), unknowns.iter().map(|i| u[*i as usize]));
                 (&**k * own).as_slice().to_vec()
@@ -292,7 +305,7 @@ impl<const D: usize> Body for CellSolid<D> {
             }
         }
         if order == Order::Second {
-            for (unknowns, k) in unknowns.iter().zip(&self.stiffness) {
+            for (unknowns, k) in unknowns.iter().zip(stiffness) {
                 // Symmetric: rows are columns.
                 out.add_block(unknowns, k.as_slice());
             }
@@ -421,12 +434,20 @@ impl<const D: usize> Elimination for CellSolid<D> {
         functions.flat_map(|f| [spatial(&self.body.position(f)).into(); D]).collect()
     }
 
+    fn keep_cells(&mut self, keep: &[bool]) -> bool {
+        self.kept.retain(|cell| keep[*cell]);
+        self.stiffness = OnceLock::new();
+        self.fictitious = OnceLock::new();
+        true
+    }
+
     fn subspaces(&self) -> Option<Subspaces<'_>> {
         if !self.body.law().is_linear() {
             return None;
         }
-        let own = self.stiffness.iter().enumerate();
-        let stiffness = own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(c), entries: k.as_slice() }).collect();
+        let own = self.kept.iter().zip(self.stiffness());
+        let stiffness =
+            own.map(|(c, k)| Block { unknowns: self.body.unknowns_of(*c), entries: k.as_slice() }).collect();
         Some(Subspaces { stiffness, sets: self.body.schwarz_sets() })
     }
 

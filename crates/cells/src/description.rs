@@ -26,6 +26,7 @@ use signorini_geometry::mesh::TriangleMesh;
 use signorini_geometry::{Aabb, Point, Vector};
 use signorini_material::{SolidMaterial, Space};
 use signorini_mechanics::Body;
+use signorini_mechanics::processes::Processes;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -107,8 +108,10 @@ pub struct Description {
     pub modulus: Option<(Scalar, f64)>,
     /// The whole recovered boundary is always there as `boundary`.
     pub places: BTreeMap<String, Part>,
-    /// Memory in bytes that the body and its equations may take.
+    /// Memory in bytes that the body and its equations may take: the same on all processes.
     pub memory: f64,
+    /// Those that make the same body together; all of them do.
+    pub processes: Option<Arc<dyn Processes>>,
 }
 
 impl Description {
@@ -141,6 +144,7 @@ impl Description {
             modulus: None,
             places: BTreeMap::new(),
             memory: f64::INFINITY,
+            processes: None,
         }
     }
 }
@@ -213,6 +217,7 @@ fn in_dimension<const D: usize>(d: &Description) -> Result<Built, CellsError> {
         boundary: optional,
         refine_narrow,
         memory: d.memory,
+        processes: d.processes.clone(),
     };
     let body = CellBody::new(region, tree, setup, CellMaterial { solid: d.material.clone(), modulus, space: d.space })?;
     let (findings, volume, cells) = (body.findings().clone(), body.volume(), body.cells().len());

@@ -8,6 +8,8 @@ use crate::region::{Integration, Region};
 use crate::space::Products;
 use crate::tree::Leaf;
 use signorini_material::{Elastic, SolidMaterial, Space};
+use signorini_mechanics::processes::Processes;
+use std::sync::Arc;
 
 /// What is done with pieces of the body that do not hang together with the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,8 +45,10 @@ pub struct Discretisation<const D: usize> {
     /// Times that cells are halved in which the boundary faces itself or turns by more than half a radian: where a pore or a
     /// gap is narrower than a cell, around tips, and at edges.
     pub refine_narrow: usize,
-    /// Memory in bytes that the body and its equations may take.
+    /// Memory in bytes that the body and its equations may take: the same on all processes.
     pub memory: f64,
+    /// Those that make the same body together.
+    pub processes: Option<Arc<dyn Processes>>,
 }
 
 impl<const D: usize> Discretisation<D> {
@@ -61,6 +65,7 @@ impl<const D: usize> Discretisation<D> {
             boundary: Boundary::Expected,
             refine_narrow: 0,
             memory: f64::INFINITY,
+            processes: None,
         }
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! - [`Domain`], [`shapes`]: bodies from implicit shapes; [`facets`], `polygon`: from closed surfaces of triangles; [`voxels`] and
 //!   [`image`]: from images.
-//! - [`region`]: the quadrature of the material in a cell and of its boundary.
+//! - [`region`]: the quadrature of the material in a cell and of its boundary; `rules`: of all cells, by one or several processes.
 //! - [`tree`], [`space`], [`jets`], [`legendre`]: cells, refinement, functions.
 //! - [`components`]: what of the material hangs together.
 //! - [`moments`]: few points for many; `tensor_integrals`: sums over them, direction by direction.
@@ -42,6 +42,7 @@ mod numbering;
 pub mod place;
 mod polygon;
 pub mod region;
+mod rules;
 pub mod schwarz;
 pub mod shapes;
 pub mod space;

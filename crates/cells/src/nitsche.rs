@@ -21,16 +21,22 @@ pub(crate) struct NitschePart<const D: usize> {
 }
 
 impl<const D: usize> CellBody<D> {
-    /// Points of the boundary by the cells that they lie in, with the stabilisation of Nitsche's method there.
-    pub(crate) fn nitsche_parts(&self, sites: &[Site<D>], stiffness: &[Arc<DMatrix<f64>>]) -> Vec<NitschePart<D>> {
+    /// Points of the boundary by the cells that they lie in, with the stabilisation of Nitsche's method there; `stiffness` is that of
+    /// some cells.
+    pub(crate) fn nitsche_parts(
+        &self,
+        sites: &[Site<D>],
+        stiffness: impl Fn(&[usize]) -> Vec<Arc<DMatrix<f64>>>,
+    ) -> Vec<NitschePart<D>> {
         // By the cell that gives the stress.
         let mut groups: BTreeMap<usize, Vec<&Site<D>>> = BTreeMap::new();
         for site in sites {
             groups.entry(self.cells()[site.cell].stress_cell).or_default().push(site);
         }
+        let stiffness = stiffness(&groups.keys().copied().collect::<Vec<_>>());
         let mut out = Vec::new();
-        for (stress_cell, sites) in groups {
-            let gamma = 2.0 * self.trace_constant(stress_cell, &sites, &stiffness[stress_cell]);
+        for ((stress_cell, sites), stiffness) in groups.into_iter().zip(stiffness) {
+            let gamma = 2.0 * self.trace_constant(stress_cell, &sites, &stiffness);
             let mut by_cell: BTreeMap<usize, Vec<Site<D>>> = BTreeMap::new();
             sites.iter().for_each(|s| by_cell.entry(s.cell).or_default().push(**s));
             out.extend(by_cell.into_iter().map(|(cell, sites)| NitschePart { cell, stress_cell, sites, gamma }));

@@ -35,15 +35,21 @@ impl<const D: usize> CellBody<D> {
 
     /// The stiffness matrices of all cells, at rest.
     pub fn stiffness(&self) -> Vec<Arc<DMatrix<f64>>> {
+        self.stiffness_of(&(0..self.cells().len()).collect::<Vec<_>>())
+    }
+
+    /// The stiffness matrices of some cells, at rest.
+    pub(crate) fn stiffness_of(&self, cells: &[usize]) -> Vec<Arc<DMatrix<f64>>> {
         if !self.is_hooke_at_rest() {
-            return self.stiffness_by_law();
+            return self.stiffness_by_law(cells);
         }
         let alike = self.is_homogeneous();
         let on_grid = |cell: &&Cell<D>| self.tree.leaves()[cell.leaf].level == 0;
         // Cells of the grid differ in their place only.
         let shared = self.cells().iter().find(|c| alike && on_grid(c)).map(|c| Arc::new(self.full_stiffness(c)));
-        (self.cells().par_iter())
-            .map(|cell| {
+        (cells.par_iter())
+            .map(|number| {
+                let cell = &self.cells()[*number];
                 let full = match &shared {
                     Some(shared) if on_grid(&cell) => shared.clone(),
                     _ => Arc::new(self.full_stiffness(cell)),
@@ -75,16 +81,17 @@ impl<const D: usize> CellBody<D> {
         !self.solid().varies() && law.fibre_direction().is_none() && !matches!(law, StressLaw::Orthotropic(_))
     }
 
-    fn stiffness_by_law(&self) -> Vec<Arc<DMatrix<f64>>> {
-        let fictitious = self.fictitious();
+    fn stiffness_by_law(&self, cells: &[usize]) -> Vec<Arc<DMatrix<f64>>> {
+        let fictitious = self.fictitious_of(cells);
         let start = self.law().start();
-        let of = |cell: usize| {
+        let of = |(cell, fictitious): (&usize, &Option<DMatrix<f64>>)| {
+            let cell = *cell;
             let own = vec![0.0; D * self.cells()[cell].functions.len()];
             let found = self.material_forces(cell, &own, &|_| &start, true).ok().and_then(|f| f.tangent);
             let inside = found.unwrap_or_else(|| DMatrix::zeros(own.len(), own.len()));
-            Arc::new(fictitious[cell].as_ref().map_or_else(|| inside.clone(), |f| &inside + f))
+            Arc::new(fictitious.as_ref().map_or_else(|| inside.clone(), |f| &inside + f))
         };
-        (0..self.cells().len()).into_par_iter().map(of).collect()
+        cells.par_iter().zip(&fictitious).map(of).collect()
     }
 
     fn full_stiffness(&self, cell: &Cell<D>) -> DMatrix<f64> {

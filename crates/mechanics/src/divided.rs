@@ -9,8 +9,9 @@ use crate::equilibrium::Problem;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::partition::bisected;
-use crate::processes::{DistributedEquations, DistributedMatrix, Division, Preconditioner, Processes};
+use crate::processes::{DistributedEquations, DistributedMatrix, Division, Preconditioner, Processes, Share};
 use crate::system::{Assembled, System, SystemState};
+use signorini_solve::{Symbolic, SymmetricMatrix};
 use std::sync::Arc;
 
 /// Why a system cannot be divided.
@@ -19,7 +20,7 @@ pub enum DivisionError {
     #[error("{processes} processes have only {cells} cells to share: start at most {cells}")]
     TooMany { processes: usize, cells: usize },
     /// A body whose cells cannot be assembled one by one.
-    #[error("`{body}` cannot be divided among processes: only solids of finite elements can")]
+    #[error("`{body}` cannot be divided among processes: only solids of finite elements and of finite cells can")]
     Whole { body: String },
 }
 
@@ -63,9 +64,63 @@ impl System {
         }
         // What no cell has, such as unknowns that are held for good.
         owner.iter_mut().filter(|owner| **owner == u32::MAX).for_each(|owner| *owner = 0);
-        self.division = Some(Division { processes, owner });
+        let rank = processes.rank() as u32;
+        let first = self.numbering().0;
+        let of_bodies = cells.iter().zip(first).flat_map(|(cells, first)| cells.iter().map(move |cell| (cell, first)));
+        let own: Vec<(&Vec<u32>, u32)> =
+            of_bodies.zip(&part).filter(|(_, p)| **p == rank).map(|(cell, _)| cell).collect();
+        let share = Share {
+            unknowns: count,
+            rows: owner.iter().filter(|owner| **owner == rank).count(),
+            components: self.components(),
+            in_blocks: own.iter().map(|(cell, _)| cell.len().pow(2)).sum(),
+            entries: entries_of(&own, count),
+        };
+        self.division = Some(Division { processes, owner, share });
         Ok(())
     }
+
+    /// What this process has of a system that is divided.
+    pub fn share(&self) -> Option<&Share> {
+        self.division.as_ref().map(|division| &division.share)
+    }
+
+    /// About what memory a Cholesky factor of all bodies takes, in bytes.
+    pub fn factor_memory(&self) -> f64 {
+        let of_body = |body: &dyn Body| {
+            let pattern = SymmetricMatrix::from_cliques(body.unknowns(), &body.cliques());
+            Symbolic::default().cost(&pattern).map_or(0.0, |cost| cost.bytes)
+        };
+        self.bodies.iter().filter(|body| body.unknowns() > 0).map(|body| of_body(body.as_ref())).sum()
+    }
+
+    /// Unknowns of a node, which have the same place: of all bodies the fewest.
+    fn components(&self) -> usize {
+        let of_body = |body: &dyn Body| {
+            let places = body.places();
+            places.iter().take_while(|x| **x == places[0]).count()
+        };
+        let moved = self.bodies.iter().filter(|body| body.unknowns() > 0);
+        moved.map(|body| of_body(body.as_ref())).min().unwrap_or(1)
+    }
+}
+
+/// Entries of the matrix that cells add up to, of which the unknowns begin at a number each.
+fn entries_of(cells: &[(&Vec<u32>, u32)], count: usize) -> usize {
+    let mut number = vec![u32::MAX; count];
+    let mut numbered = 0;
+    let mut own = |u: u32| {
+        let place = &mut number[u as usize];
+        if *place == u32::MAX {
+            *place = numbered;
+            numbered += 1;
+        }
+        *place
+    };
+    let cliques: Vec<Vec<u32>> =
+        cells.iter().map(|(cell, first)| cell.iter().map(|u| own(first + u)).collect()).collect();
+    let n = numbered as usize;
+    2 * SymmetricMatrix::from_cliques(n, &cliques).entries().count() - n
 }
 
 /// The mean of the places of the unknowns of a cell.
@@ -94,9 +149,8 @@ impl Division {
         let more = (count..n).map(|k| ((k - count) * processes / (n - count)) as u32);
         let owner: Vec<u32> = self.owner.iter().copied().chain(more).collect();
         let rank = self.processes.rank() as u32;
-        let common = out.tangent.list().filter(|(row, ..)| owner[*row as usize] == rank);
-        let entries = out.of_cells.iter().flat_map(|of_cells| of_cells.list()).chain(common).collect();
-        self.processes.matrix(&owner, entries)
+        let common: Vec<_> = out.tangent.list().filter(|(row, ..)| owner[*row as usize] == rank).collect();
+        self.processes.matrix(&owner, out.of_cells.as_deref().unwrap_or_default(), &common)
     }
 }
 
@@ -165,13 +219,7 @@ impl Problem<'_> {
                 out[first as usize..first as usize + own.len()].copy_from_slice(&own);
             }
         }
-        // Unknowns of a node have the same place.
-        let components = |body: &dyn Body| {
-            let places = body.places();
-            places.iter().take_while(|x| **x == places[0]).count()
-        };
-        let components = system.bodies.iter().filter(|b| b.unknowns() > 0).map(|b| components(b.as_ref())).min();
         let multipliers = list.iter().map(|m| m.told()).collect();
-        Preconditioner { springs, multipliers, touched, motions, components: components.unwrap_or(1) }
+        Preconditioner { springs, multipliers, touched, motions, components: division.share.components }
     }
 }

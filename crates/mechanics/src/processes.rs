@@ -16,12 +16,37 @@ pub trait Processes: Send + Sync {
     /// Replaces each value by its sum over all processes, in the order of their numbers: the same digits on all of them.
     fn sum(&self, values: &mut [f64]);
 
+    /// The numbers of each process, on all of them.
+    fn gather(&self, own: &[f64]) -> Vec<Vec<f64>>;
+
     /// The word of the first process that has one, on all of them.
     fn first_word(&self, own: Option<String>) -> Option<String>;
 
-    /// The matrix that entries of all processes add up to, whoever has their rows: `owner` names the process that has the row of
-    /// each unknown.
-    fn matrix(&self, owner: &[u32], entries: Vec<(u32, u32, f64)>) -> Box<dyn DistributedMatrix>;
+    /// The matrix that the blocks of cells of all processes, whoever has their rows, and entries in rows of this process add up to:
+    /// `owner` names the process that has the row of each unknown.
+    fn matrix(&self, owner: &[u32], cells: &[CellBlock], entries: &[(u32, u32, f64)]) -> Box<dyn DistributedMatrix>;
+}
+
+/// What a cell adds to a matrix: entries of all pairs of its unknowns, row by row.
+#[derive(Clone, Debug)]
+pub struct CellBlock {
+    pub unknowns: Vec<u32>,
+    pub entries: Vec<f64>,
+}
+
+impl CellBlock {
+    /// Row, column and value of what is not zero in rows that are asked for.
+    pub fn list<'a>(
+        &'a self,
+        rows: impl Fn(u32) -> bool + Clone + 'a,
+    ) -> impl Iterator<Item = (u32, u32, f64)> + Clone + 'a {
+        let n = self.unknowns.len().max(1);
+        let own = self.unknowns.iter().zip(self.entries.chunks(n)).filter(move |(row, _)| rows(**row));
+        own.flat_map(move |(row, values)| {
+            let entry = move |(column, value): (&u32, &f64)| (*row, *column, *value);
+            self.unknowns.iter().zip(values).filter(|(_, v)| **v != 0.0).map(entry)
+        })
+    }
 }
 
 /// A matrix whose rows are distributed. Vectors are whole, and the same on all processes.
@@ -87,10 +112,24 @@ pub struct Found {
     pub iterations: Option<usize>,
 }
 
+/// What one process has of a system that is divided, from which the memory of its equations is told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Share {
+    /// Unknowns of the bodies on all processes, and those whose rows this process has.
+    pub unknowns: usize,
+    pub rows: usize,
+    /// Unknowns that stand side by side at a node.
+    pub components: usize,
+    /// Entries of the blocks of its cells, and of the matrix that these add up to.
+    pub in_blocks: usize,
+    pub entries: usize,
+}
+
 /// How a system is divided among processes.
 #[derive(Clone)]
 pub struct Division {
     pub processes: Arc<dyn Processes>,
     /// The process that has the row of each unknown of the bodies.
     pub owner: Vec<u32>,
+    pub share: Share,
 }

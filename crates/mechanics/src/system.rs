@@ -13,7 +13,7 @@ pub use crate::linear_constraint::OfTime;
 use crate::linear_solver::{LinearSolver, Stiffness};
 pub use crate::placed::{PlacedLoad, Support, TimeField, TimeVectorField, TimedLoad};
 use crate::points::Order;
-use crate::processes::Division;
+use crate::processes::{CellBlock, Division};
 use crate::time_step::TimeStep;
 use crate::unstable::Unstable;
 use signorini_geometry::Vector;
@@ -135,7 +135,7 @@ pub(crate) struct Assembled {
     pub sizes: Vec<f64>,
     pub tangent: Entries,
     /// What the cells of this process add to the tangent, where others have others; none where all is in `tangent`.
-    pub of_cells: Option<Entries>,
+    pub of_cells: Option<Vec<CellBlock>>,
     /// Equations that hold one unknown, and those that couple several.
     pub single: Vec<Held>,
     pub coupled: Vec<Held>,
@@ -393,7 +393,7 @@ impl System {
         // What of the tangent of a body is the same in all states, and what is not.
         let is_condensed = |body: usize| stiffness == Stiffness::Condensed && self.is_condensed()[body];
         let constant = |body: usize| if is_condensed(body) { Order::First } else { order };
-        let mut of_cells = self.division.as_ref().map(|_| Entries::default());
+        let mut of_cells = self.division.as_ref().map(|_| Vec::new());
         let mut energy = 0.0;
         for (k, (body, (state, &first))) in self.bodies.iter().zip(state.bodies.iter().zip(&first)).enumerate() {
             let mut out = Contribution::new(body.unknowns());
@@ -406,7 +406,14 @@ impl System {
             if let Some(step) = &self.step {
                 step.scale(first, &mut out);
             }
-            add(&out, first, &mut residual, &mut sizes, of_cells.as_mut().unwrap_or(&mut tangent));
+            if let Some(of_cells) = &mut of_cells {
+                let blocks = std::mem::take(&mut out.blocks).into_iter();
+                of_cells.extend(blocks.map(|(unknowns, entries)| {
+                    let unknowns = unknowns.into_iter().map(|u| u + first).collect();
+                    CellBlock { unknowns, entries }
+                }));
+            }
+            add(&out, first, &mut residual, &mut sizes, &mut tangent);
         }
         for load in &self.loads {
             let k = load.part.body;

@@ -10,6 +10,8 @@ pub mod rows;
 #[cfg(feature = "petsc")]
 mod matrix;
 #[cfg(feature = "petsc")]
+mod memory;
+#[cfg(feature = "petsc")]
 mod shim;
 #[cfg(feature = "petsc")]
 mod world;

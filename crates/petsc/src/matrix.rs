@@ -1,18 +1,18 @@
 //! A matrix whose rows are distributed: put together here, solved by PETSc.
 
+use crate::memory::iterates;
 use crate::numbering::Numbering;
 use crate::rows::Rows;
 use crate::shim::{self, Compressed, Counts, Entry, Glued, LinearSystem};
 use crate::world::World;
-use signorini_mechanics::processes::{DistributedEquations, DistributedMatrix, Found, Preconditioner, Processes};
+use signorini_mechanics::processes::{
+    CellBlock, DistributedEquations, DistributedMatrix, Found, Preconditioner, Processes,
+};
 use signorini_solve::SolveError;
 
 /// Residual relative to the right-hand side that iterations end with, and the most of them, where the options say nothing else.
 const TOLERANCE: f64 = 1e-10;
 const MOST: usize = 1000;
-/// More unknowns in a plane and in space are not factorised, where the options say nothing else: the factors of so many take about
-/// a gibibyte.
-const FACTORISED: [usize; 2] = [500_000, 50_000];
 /// Residual of an equation relative to its terms that is refused, as by a factorisation on one process.
 const REFUSED: f64 = 1e-9;
 /// Solves again for what is left.
@@ -28,15 +28,17 @@ pub struct PetscMatrix {
 }
 
 impl PetscMatrix {
-    /// Sends each entry to the process that has its row.
-    pub fn new(world: World, owner: &[u32], entries: Vec<(u32, u32, f64)>) -> Self {
+    /// Sends what cells add to rows of other processes there; `entries` are in rows of this process.
+    pub fn new(world: World, owner: &[u32], cells: &[CellBlock], entries: &[(u32, u32, f64)]) -> Self {
         let numbering = Numbering::new(owner, world.count());
+        let rank = world.rank() as u32;
+        let others = || cells.iter().flat_map(|cell| cell.list(|row| owner[row as usize] != rank));
         let mut counts = vec![0; world.count()];
-        entries.iter().for_each(|e| counts[owner[e.0 as usize] as usize] += 1);
+        others().for_each(|e| counts[owner[e.0 as usize] as usize] += 1);
         let sent = Counts::new(counts);
         let mut next: Vec<usize> = sent.ranges().map(|range| range.start).collect();
-        let mut send = vec![Entry::default(); entries.len()];
-        for (row, column, value) in entries {
+        let mut send = vec![Entry::default(); sent.all()];
+        for (row, column, value) in others() {
             let place = &mut next[owner[row as usize] as usize];
             send[*place] = Entry { row, column, value };
             *place += 1;
@@ -44,8 +46,13 @@ impl PetscMatrix {
         let received = shim::exchange(&send, &sent);
         drop(send);
         let first = numbering.first[world.rank()] as u32;
-        let of = |e: &Entry| (numbering.number[e.row as usize] - first, numbering.number[e.column as usize], e.value);
-        let rows = Rows::new(numbering.rows(world.rank()), received.iter().map(of));
+        let own = cells.iter().flat_map(|cell| cell.list(|row| owner[row as usize] == rank));
+        let of_others = received.iter().map(|e| (e.row, e.column, e.value));
+        let numbered = |(row, column, value): (u32, u32, f64)| {
+            (numbering.number[row as usize] - first, numbering.number[column as usize], value)
+        };
+        let all = own.chain(of_others).chain(entries.iter().copied()).map(numbered);
+        let rows = Rows::new(numbering.rows(world.rank()), all);
         PetscMatrix { world, owner: owner.to_vec(), numbering, rows }
     }
 
@@ -163,16 +170,6 @@ impl PetscMatrix {
         }
     }
 
-    /// Whether iterations solve the equations: where the options name a preconditioner that is no factorisation, or none and there
-    /// are many unknowns.
-    fn iterates(&self, components: usize) -> bool {
-        match shim::option(c"-pc_type").as_deref() {
-            Some("lu" | "cholesky") => false,
-            Some(_) => true,
-            None => self.numbering.unknown.len() > FACTORISED[usize::from(components == 3)],
-        }
-    }
-
     /// The largest residual of an equation relative to its terms, and the residual row by row, of a step of all unknowns. Terms
     /// that are rounding of others count as those would make of the largest values of their kind.
     fn error(&self, x: &[f64], equations: &DistributedEquations<'_>) -> (f64, Vec<f64>) {
@@ -242,7 +239,7 @@ impl DistributedMatrix for PetscMatrix {
             return Err(SolveError::OutOfMemory { size });
         }
         let by = (equations.preconditioner)(&self.diagonal());
-        let iterates = self.iterates(by.components);
+        let iterates = iterates(self.numbering.unknown.len(), by.components);
         let (system, right) = if iterates {
             let scale = |u: usize| u.checked_sub(equations.of_bodies).map_or(1.0, |k| by.multipliers[k].scale);
             let (matrix, right) = self.reduced(equations, scale);

@@ -16,30 +16,37 @@ impl Rows {
         entries.clone().for_each(|(row, ..)| start[row as usize + 1] += 1);
         (0..rows).for_each(|k| start[k + 1] += start[k]);
         let mut next = start.clone();
-        let mut list = vec![(0u32, 0.0); start[rows]];
+        let (mut columns, mut values) = (vec![0u32; start[rows]], vec![0.0; start[rows]]);
         for (row, column, value) in entries {
-            list[next[row as usize]] = (column, value);
-            next[row as usize] += 1;
+            let place = &mut next[row as usize];
+            (columns[*place], values[*place]) = (column, value);
+            *place += 1;
         }
-        let mut out = Rows { start: vec![0], columns: Vec::new(), values: Vec::new() };
+        // Rows are summed where they are: none becomes longer.
+        let mut of_row: Vec<(u32, f64)> = Vec::new();
+        let (mut done, mut ends) = (0, vec![0]);
         for k in 0..rows {
-            let row = &mut list[start[k]..start[k + 1]];
+            let own = start[k]..start[k + 1];
+            of_row.clear();
+            of_row.extend(columns[own.clone()].iter().copied().zip(values[own].iter().copied()));
             // Stable: the order of a sum is that of the entries.
-            row.sort_by_key(|e| e.0);
-            let begin = out.columns.len();
-            for &(column, value) in row.iter() {
-                if out.columns.len() > begin && out.columns.last() == Some(&column) {
-                    if let Some(last) = out.values.last_mut() {
-                        *last += value;
-                    }
+            of_row.sort_by_key(|e| e.0);
+            let begin = done;
+            for &(column, value) in &of_row {
+                if done > begin && columns[done - 1] == column {
+                    values[done - 1] += value;
                 } else {
-                    out.columns.push(column);
-                    out.values.push(value);
+                    (columns[done], values[done]) = (column, value);
+                    done += 1;
                 }
             }
-            out.start.push(out.columns.len());
+            ends.push(done);
         }
-        out
+        columns.truncate(done);
+        values.truncate(done);
+        columns.shrink_to_fit();
+        values.shrink_to_fit();
+        Rows { start: ends, columns, values }
     }
 
     pub fn count(&self) -> usize {

@@ -154,7 +154,7 @@ impl Counts {
         Counts { counts, starts }
     }
 
-    fn all(&self) -> usize {
+    pub fn all(&self) -> usize {
         self.counts.iter().map(|n| *n as usize).sum()
     }
 

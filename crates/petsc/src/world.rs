@@ -2,7 +2,7 @@
 
 use crate::matrix::PetscMatrix;
 use crate::shim::{self, Compressed, Counts, LinearSystem};
-use signorini_mechanics::processes::{DistributedMatrix, Processes};
+use signorini_mechanics::processes::{CellBlock, DistributedMatrix, Processes, Share};
 use std::sync::OnceLock;
 
 /// The processes of `MPI_COMM_WORLD`. There is one in a program, started once.
@@ -53,6 +53,19 @@ impl World {
         Ok(())
     }
 
+    /// About what memory in bytes the equations of a share take, and whether iterations solve them; `factor` is that of a Cholesky
+    /// factor of all.
+    pub fn memory(self, share: &Share, factor: impl FnOnce() -> f64) -> (f64, bool) {
+        let iterates = crate::memory::iterates(share.unknowns, share.components);
+        (crate::memory::equations(share, self.count, factor), iterates)
+    }
+
+    /// The largest of the numbers of all processes.
+    pub fn largest(self, own: f64) -> f64 {
+        let all = shim::gather(&[own], &Counts::new(std::iter::repeat_n(1, self.count)));
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Options that nothing has asked for so far.
     pub fn unused_options(self) -> Vec<String> {
         shim::unused_options()
@@ -82,6 +95,13 @@ impl Processes for World {
         values.copy_from_slice(&shim::gather(&sum, &sent));
     }
 
+    fn gather(&self, own: &[f64]) -> Vec<Vec<f64>> {
+        let lengths = shim::gather(&[own.len() as f64], &Counts::new(std::iter::repeat_n(1, self.count)));
+        let counts = Counts::new(lengths.iter().map(|n| *n as usize));
+        let all = shim::gather(own, &counts);
+        counts.ranges().map(|range| all[range].to_vec()).collect()
+    }
+
     fn first_word(&self, own: Option<String>) -> Option<String> {
         let first = shim::least(if own.is_some() { self.rank } else { self.count });
         if first == self.count {
@@ -96,7 +116,7 @@ impl Processes for World {
         Some(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    fn matrix(&self, owner: &[u32], entries: Vec<(u32, u32, f64)>) -> Box<dyn DistributedMatrix> {
-        Box::new(PetscMatrix::new(*self, owner, entries))
+    fn matrix(&self, owner: &[u32], cells: &[CellBlock], entries: &[(u32, u32, f64)]) -> Box<dyn DistributedMatrix> {
+        Box::new(PetscMatrix::new(*self, owner, cells, entries))
     }
 }

@@ -137,6 +137,12 @@ fn stop_flag() -> Arc<AtomicBool> {
 }
 
 impl Progress for Bar {
+    fn size(&mut self, told: &str) {
+        if !self.json {
+            tell!("{told}");
+        }
+    }
+
     fn step(&mut self, index: usize, count: usize, time: f64) {
         self.bar.set_length(count as u64);
         self.bar.set_position(index as u64);

@@ -24,7 +24,7 @@ use crate::problem::{Analysis, Body, CaseError, Problem, Space};
 use planner::Planner;
 
 pub use domain::Pieces;
-pub use head::Head;
+pub use head::{Head, Size};
 pub use located::LocatedExpression;
 pub use membrane::MembranePlan;
 pub use memory::{check_memory, memory_at_hand, memory_estimate, mesh_multigrid_estimate, multigrid_estimate};

@@ -4,13 +4,18 @@
 //! one is the first that something is wrong with.
 
 use crate::plan::mechanics::{Kind, MechanicsPlan};
-use crate::problem::CaseError;
+#[cfg(feature = "petsc")]
+use crate::plan::{Size, check_memory};
 #[cfg(feature = "petsc")]
 use crate::problem::LinearMethod;
+use crate::problem::{CaseError, Problem};
+use crate::run::environment::fnv1a;
 #[cfg(feature = "petsc")]
+use crate::run::environment::resident_memory;
 use signorini_mechanics::processes::Processes;
 #[cfg(feature = "petsc")]
 use signorini_petsc::World;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The process that speaks for all.
@@ -73,6 +78,32 @@ pub fn speaks() -> bool {
     rank == SPEAKER.load(Ordering::Relaxed)
 }
 
+/// All processes, where there are several: to share the work of making bodies.
+#[cfg(feature = "petsc")]
+pub(crate) fn several() -> Option<Arc<dyn Processes>> {
+    world().filter(|world| world.count() > 1).map(|world| Arc::new(world) as _)
+}
+
+/// All processes, where there are several.
+#[cfg(not(feature = "petsc"))]
+pub(crate) fn several() -> Option<Arc<dyn Processes>> {
+    None
+}
+
+/// The least of the numbers of all processes, of what they might see differently, such as the memory that is free.
+pub(crate) fn least(own: f64) -> f64 {
+    let all = several().map_or_else(Vec::new, |processes| processes.gather(&[own]));
+    all.into_iter().flatten().fold(own, f64::min)
+}
+
+/// Whether all processes have the same bytes.
+pub(crate) fn agree(bytes: &[u8]) -> bool {
+    let Some(processes) = several() else { return true };
+    let hash = fnv1a(bytes);
+    let own = [bytes.len() as f64, (hash >> 32) as f64, (hash & u64::from(u32::MAX)) as f64];
+    processes.gather(&own).iter().all(|other| *other == own)
+}
+
 /// The word of the first process, on all of them: of what they might see differently, such as the time.
 #[cfg(feature = "petsc")]
 pub(crate) fn agreed(own: bool) -> bool {
@@ -90,6 +121,28 @@ pub(crate) fn agreed(own: bool) -> bool {
 #[cfg(not(feature = "petsc"))]
 pub(crate) fn agreed(own: bool) -> bool {
     own
+}
+
+/// Unknowns of a system that is divided, what solves its equations, and about how much memory that takes on this machine.
+///
+/// # Errors
+/// Less memory than that.
+#[cfg(feature = "petsc")]
+fn size_of(plan: &MechanicsPlan, world: World) -> Result<Size, CaseError> {
+    let share = plan.system.share().copied().unwrap_or_default();
+    let (own, iterates) = world.memory(&share, || plan.system.factor_memory());
+    let here = started_here().min(world.count());
+    let needed = world.largest(own) * here as f64;
+    let by = if iterates { "iterations of PETSc" } else { "factors of MUMPS" };
+    let how = format!("{by} in {} processes, {here} of them on this machine,", world.count());
+    check_memory(
+        &plan.head.problem,
+        &format!("the equations of {} unknowns, solved by {how}", share.unknowns),
+        needed,
+    )?;
+    // Bodies are there already.
+    let bodies = world.largest(resident_memory().unwrap_or(0) as f64) * here as f64;
+    Ok(Size::new(share.unknowns, how.trim_end_matches(','), needed + bodies))
 }
 
 /// What is wrong on one process is wrong on all; the first of them tells it.
@@ -181,25 +234,29 @@ fn not_yet(what: &str) -> CaseError {
         .help("run it with one process; docs/cluster.md tells what several can solve")
 }
 
+/// Whether PETSc solves a problem: where there are several processes, or it is asked for.
+pub(crate) fn by_petsc(problem: &Problem) -> bool {
+    is_connected() || problem.method.as_ref().is_some_and(|method| method.linear.is_some())
+}
+
 /// Divides the system of a plan among the processes, where there are several or PETSc is asked for.
 ///
 /// # Errors
 /// What only one process can solve; a program without PETSc that is asked for; more processes than cells.
 pub(crate) fn divide(plan: &mut MechanicsPlan) -> Result<(), CaseError> {
     let problem = &plan.head.problem;
-    let wanted = problem.method.as_ref().and_then(|method| method.linear.as_ref());
-    if wanted.is_none() && !is_connected() {
+    if !by_petsc(problem) {
         return Ok(());
     }
+    let wanted = problem.method.as_ref().and_then(|method| method.linear.as_ref());
     let at = |error: CaseError| match wanted {
         Some(linear) => CaseError { help: error.help.clone(), ..problem.error(linear, error.message) },
         None => error,
     };
     let kind = |k: &Kind| match k {
         Kind::Curve { .. } => Some("ropes and beams"),
-        Kind::Cells => Some("bodies of finite cells"),
         Kind::Rigid { is_free: true, .. } => Some("free rigid bodies"),
-        Kind::Solid | Kind::Rigid { .. } => None,
+        Kind::Solid | Kind::Cells | Kind::Rigid { .. } => None,
     };
     let what = plan.kinds.iter().find_map(kind);
     let what = what.or_else(|| plan.motion.dynamics.iter().any(Option::is_some).then_some("motion with inertia"));
@@ -214,8 +271,12 @@ pub(crate) fn divide(plan: &mut MechanicsPlan) -> Result<(), CaseError> {
         if let Some(LinearMethod::Petsc(options)) = wanted {
             world.options(options).map_err(|message| at(CaseError::new(message)))?;
         }
-        let divided = plan.system.divide(std::sync::Arc::new(world));
+        let divided = plan.system.divide(Arc::new(world));
         divided.map_err(|error| at(CaseError::new(error.to_string())))?;
+        let size = size_of(plan, world);
+        let size = all(size)?;
+        plan.notes.push(size.told.clone());
+        plan.head.size = Some(size);
         if plan.system.bodies.iter().any(|body| !body.is_rigid() && !body.is_linear()) {
             let message = "states at finite strain are not tested for stability where PETSc solves";
             plan.head.warnings.push(message.into());

@@ -61,7 +61,7 @@ pub fn resume(problem: &Problem, folder: &Path, progress: &mut dyn Progress) -> 
 /// reason of the summary tell of it, and the states before are there.
 pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = Instant::now();
-    let mut model = model(problem)?;
+    let mut model = model(problem, progress)?;
     let record = record::in_memory(model.head());
     drive(&mut *model, record, 0, start, progress)
 }
@@ -72,7 +72,7 @@ pub fn solve(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, 
 /// Those of [`solve`].
 pub fn summarise(problem: &Problem, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = Instant::now();
-    let mut model = model(problem)?;
+    let mut model = model(problem, progress)?;
     let record = Record::new(model.head(), Folder::default());
     drive(&mut *model, record, 0, start, progress)
 }
@@ -88,7 +88,7 @@ pub fn keep(
     progress: &mut dyn Progress,
 ) -> Result<(Outcome, Files), RunError> {
     let start = Instant::now();
-    let mut model = model(problem)?;
+    let mut model = model(problem, progress)?;
     let record = match folder {
         Some(folder) => record::begin(model.head(), folder)?,
         None => Record::new(model.head(), Folder::in_memory()),
@@ -101,7 +101,7 @@ pub fn keep(
 fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Progress) -> Result<Outcome, RunError> {
     let start = Instant::now();
     // Everything that can be checked is checked before the folder is touched.
-    let mut model = model(problem)?;
+    let mut model = model(problem, progress)?;
     // The first of several processes writes for all.
     let writes = processes::rank() == 0;
     let silent = |model: &dyn Model| Record::new(model.head(), Folder::default());
@@ -114,14 +114,18 @@ fn begin(problem: &Problem, folder: &Path, begun: Begun, progress: &mut dyn Prog
     drive(&mut *model, record, 0, start, progress)
 }
 
-/// The model of a problem at its beginning.
-fn model(problem: &Problem) -> Result<Box<dyn Model>, CaseError> {
+/// The model of a problem at its beginning; its size is told.
+fn model(problem: &Problem, progress: &mut dyn Progress) -> Result<Box<dyn Model>, CaseError> {
     let planned: Box<dyn Planned> = match processes::all(plan(problem))? {
         Plan::Line(p) => Box::new(p),
         Plan::Plane(p) => Box::new(p),
         Plan::Mechanics(p) => p,
     };
-    planned.model()
+    let model = processes::all(planned.model())?;
+    if let Some(size) = &model.head().size {
+        progress.size(&size.told);
+    }
+    Ok(model)
 }
 
 fn planned(plan: &Plan) -> &dyn Planned {

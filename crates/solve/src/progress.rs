@@ -18,6 +18,8 @@ pub struct Iteration<'a> {
 
 /// Receives what a solver reports.
 pub trait Progress {
+    /// Before anything is solved: how large the problem is, what solves it, and about how much memory that takes, in words.
+    fn size(&mut self, _told: &str) {}
     /// A new increment begins.
     fn step(&mut self, _index: usize, _count: usize, _time: f64) {}
     fn iteration(&mut self, _iteration: &Iteration) {}

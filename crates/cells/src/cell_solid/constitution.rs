@@ -21,14 +21,16 @@ const BESIDE: f64 = 1e-9;
 pub(super) struct Fitted<const D: usize>(Vec<(Fit<D>, DMatrix<f64>)>);
 
 impl<const D: usize> CellSolid<D> {
-    /// Adds forces and tangent of all cells by the law; the energy.
+    /// Adds forces and tangent of the cells of this process by the law; the energy.
     pub(super) fn integrated(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
         let body = &self.body;
-        let of = |cell: usize| {
+        let fictitious = self.fictitious.get_or_init(|| body.fictitious_of(&self.kept));
+        let of = |(cell, fictitious): (&usize, &Option<DMatrix<f64>>)| {
+            let cell = *cell;
             let own = body.own(cell, &state.configuration);
             let history = |q: usize| self.history.at(&state.internal, cell, q);
             let mut found = body.material_forces(cell, &own, &history, order == Order::Second)?;
-            if let Some(fictitious) = &self.fictitious[cell] {
+            if let Some(fictitious) = fictitious {
                 let own = nalgebra::DVector::from_vec(own);
                 let forces = fictitious * &own;
                 found.energy += 0.5 * forces.dot(&own);
@@ -39,9 +41,9 @@ impl<const D: usize> CellSolid<D> {
             }
             Ok(found)
         };
-        let found: Vec<Result<_, StrainError>> = (0..body.cells().len()).into_par_iter().map(of).collect();
+        let found: Vec<Result<_, StrainError>> = self.kept.par_iter().zip(fictitious).map(of).collect();
         let mut energy = 0.0;
-        for (cell, found) in found.into_iter().enumerate() {
+        for (cell, found) in self.kept.iter().copied().zip(found) {
             let mut found = found.map_err(|e| self.refused(cell, &e))?;
             let unknowns = body.unknowns_of(cell);
             energy += found.energy;

@@ -31,7 +31,7 @@ pub(super) struct WeakHold<const D: usize> {
 
 impl<const D: usize> WeakHold<D> {
     pub fn new(solid: &CellSolid<D>, sites: &[Site<D>]) -> Self {
-        let parts = solid.body.nitsche_parts(sites, &solid.stiffness);
+        let parts = solid.body.nitsche_parts(sites, |cells| solid.stiffness_of(cells));
         let group = |part: NitschePart<D>| Group {
             rows: RowSpace::new(&solid.body, part.cell, part.stress_cell),
             sites: part.sites,

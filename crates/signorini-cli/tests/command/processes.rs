@@ -37,6 +37,13 @@ mod with_petsc {
     use serde_json::Value;
     use std::process::Output;
 
+    fn mpirun(folder: &Path) -> Command {
+        let mut command = Command::new("mpirun");
+        command.args(["--oversubscribe", "--mca", "mpi_yield_when_idle", "1"]).current_dir(folder);
+        command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        command
+    }
+
     /// Runs a case of the gallery by so many processes; none are started together for 0.
     fn run(folder: &Path, processes: usize, case: &str, more: &[&str]) -> (Output, Value) {
         let out = format!("out{processes}");
@@ -44,10 +51,8 @@ mod with_petsc {
         let mut command = match processes {
             0 => signorini(folder),
             n => {
-                let mut command = Command::new("mpirun");
-                command.args(["--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", &n.to_string()]);
-                command.arg(assert_cmd::cargo::cargo_bin("signorini")).current_dir(folder);
-                command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+                let mut command = mpirun(folder);
+                command.args(["-n", &n.to_string()]).arg(assert_cmd::cargo::cargo_bin("signorini"));
                 command
             }
         };
@@ -65,7 +70,7 @@ mod with_petsc {
     #[test]
     fn processes_find_what_one_finds() {
         let folder = tempfile::tempdir().expect("a folder");
-        for (case, contact) in [("hertz", "touch"), ("incline", "foot")] {
+        for (case, contact) in [("hertz", "touch"), ("incline", "foot"), ("rubber_tube", "crush")] {
             let (_, one) = run(folder.path(), 0, case, &[]);
             let ways = [(2, &[][..]), (3, &[]), (2, &["--set", "method.linear={petsc=\"-pc_type gamg\"}"])];
             // All ways of the smaller one.
@@ -116,5 +121,37 @@ mod with_petsc {
         let (output, summary) = run(folder.path(), 2, "incline", &["--set", "method.linear={petsc=\"-no_such 1\"}"]);
         assert!(output.status.success(), "{}", error(&output));
         assert!(summary["warnings"].to_string().contains("did not use the options `-no_such`"), "{summary}");
+    }
+
+    /// An image that one process cannot read, or that is another one there, ends all of them with a word.
+    #[test]
+    fn an_image_is_the_same_for_all_processes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let case = "[bodies.block.cells]\ngeometry.image = { file = \"image.npy\", spacing = [1, 1, 1], threshold = 0.5 }\n\
+                    mesh.grid = { cells = [2, 2, 2] }\nmaterial.linear_elastic = { youngs_modulus = 1, poissons_ratio = 0.3 }\n\
+                    [supports.base]\non = \"block:bottom\"\ndisplacement = [0, 0, 0]\n[[steps]]\nto = 1\n";
+        let image = |value: u8| {
+            let head = format!("{:<117}\n", "{'descr': '|u1', 'fortran_order': False, 'shape': (4, 4, 4), }");
+            [&b"\x93NUMPY\x01\x00\x76\x00"[..], head.as_bytes(), &[1; 32], &[value; 32]].concat()
+        };
+        let told = |other: Option<u8>, expected: &str| {
+            for (name, image) in [("first", Some(image(0))), ("second", other.map(image))] {
+                let own = folder.path().join(name);
+                std::fs::create_dir_all(&own).expect("a folder");
+                std::fs::write(own.join("case.toml"), case).expect("a file");
+                image.into_iter().for_each(|image| std::fs::write(own.join("image.npy"), image).expect("a file"));
+            }
+            let program = assert_cmd::cargo::cargo_bin("signorini").display().to_string();
+            let mut command = mpirun(folder.path());
+            for (name, end) in [("first", Some(":")), ("second", None)] {
+                command.args(["-n", "1", "--wdir"]).arg(folder.path().join(name));
+                command.args([&program, "run", "case.toml", "-o", "out"]).args(end);
+            }
+            let output = command.output().expect("a run");
+            assert_eq!(error(&output).matches(expected).count(), 1, "{}", error(&output));
+            assert!(!output.status.success() && !folder.path().join("first/out").exists());
+        };
+        told(None, "cannot be read");
+        told(Some(2), "is not the same for all processes");
     }
 }

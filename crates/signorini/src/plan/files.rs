@@ -4,6 +4,7 @@ use super::placement::PlacementKeys;
 use super::planner::Planner;
 use crate::problem::units::LENGTH;
 use crate::problem::{self, CaseError, Location};
+use crate::processes;
 use crate::relief::{MovedHeight, Sampled};
 use crate::report::Warning;
 use signorini_geometry::mesh::TriangleMesh;
@@ -13,11 +14,24 @@ impl Planner<'_> {
     /// A file named in the case, beside the case; the files of the gallery are carried in the program.
     pub(super) fn read_file(&self, name: &String) -> Result<(std::path::PathBuf, Vec<u8>), CaseError> {
         let path = self.problem.source.folder().join(name);
-        match (self.problem.source.read(name), crate::gallery::asset(name)) {
+        let read = match (self.problem.source.read(name), crate::gallery::asset(name)) {
             (Ok(bytes), _) => Ok((path, bytes)),
             (Err(_), Some(bytes)) => Ok((path, bytes.to_vec())),
             (Err(e), None) => Err(self.problem.error(name, format!("`{}`: cannot be read: {e}", path.display()))),
+        };
+        let (path, bytes) = processes::all(read)?;
+        self.check_same(name, &bytes)?;
+        Ok((path, bytes))
+    }
+
+    /// # Errors
+    /// A file of which not all processes see the same bytes.
+    pub(super) fn check_same(&self, name: &String, bytes: &[u8]) -> Result<(), CaseError> {
+        if processes::agree(bytes) {
+            return Ok(());
         }
+        let message = format!("`{name}` is not the same for all processes");
+        Err(self.problem.error(name, message).help("put it where all of them read the same file"))
     }
 
     /// The heights of a map.

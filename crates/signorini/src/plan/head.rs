@@ -9,6 +9,8 @@ use crate::report::{UnitNames, Warning};
 /// The problem as its results tell of it.
 #[derive(Clone)]
 pub struct Head {
+    /// Of solids; none where it is not known before the run.
+    pub size: Option<Size>,
     pub problem: Problem,
     pub units: Option<Units>,
     /// What the values with units were taken for.
@@ -18,6 +20,24 @@ pub struct Head {
     pub every: usize,
     /// Whether pictures are wanted.
     pub pictures: bool,
+}
+
+/// How large a problem is.
+#[derive(Clone, Debug)]
+pub struct Size {
+    /// In words.
+    pub told: String,
+    /// About what memory it takes, in bytes.
+    pub memory: f64,
+}
+
+impl Size {
+    /// Of so many unknowns, solved in some way.
+    pub fn new(unknowns: usize, how: &str, memory: f64) -> Self {
+        let told =
+            format!("{unknowns} unknowns, solved by {how}, require about {:.2} GiB", memory / f64::from(1u32 << 30));
+        Size { told, memory }
+    }
 }
 
 impl Head {
@@ -45,6 +65,7 @@ impl Planner<'_> {
         warnings.append(&mut self.warnings.borrow_mut());
         warnings.extend(self.problem.source.renamed_keys().map(Warning::from));
         Ok(Head {
+            size: None,
             problem: self.problem.clone(),
             units: self.reader.units,
             interpreted: self.reader.echo(),

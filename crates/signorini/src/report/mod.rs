@@ -316,6 +316,10 @@ pub struct Environment {
     pub cpu_seconds: Option<f64>,
     /// Peak memory in bytes.
     pub peak_memory: Option<u64>,
+    /// Memory in bytes that the bodies and the equations were estimated to need before the run: on a machine, of all processes there.
+    /// Null of membranes, ropes and beams.
+    #[serde(default)]
+    pub estimated_memory: Option<u64>,
     /// Wall time of the audit in seconds.
     #[serde(default)]
     pub audit_seconds: f64,

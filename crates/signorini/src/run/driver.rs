@@ -10,7 +10,7 @@ use crate::output::{Folder, OutputError};
 use crate::plan::Head;
 use crate::problem::{CaseError, Limits};
 use crate::processes;
-use crate::report::{ForceBounds, PathReports, Reason, SCHEMA, StepReport, Summary, history};
+use crate::report::{Environment, ForceBounds, PathReports, Reason, SCHEMA, StepReport, Summary, history};
 use serde_json::{Value, json};
 use signorini_audit::{Check, Finding, Verdict, worst};
 use signorini_solve::{Iteration, Progress};
@@ -351,7 +351,10 @@ fn finish(record: &Record, model: &dyn Model, reason: Reason, start: Instant) ->
         events: record.events.clone(),
         contact_events: record.contact_events.clone(),
         of_paths: PathReports::default(),
-        environment: environment::describe(start, rayon::current_num_threads(), (&record.text, record.audit_seconds)),
+        environment: Environment {
+            estimated_memory: model.head().size.as_ref().map(|size| size.memory as u64),
+            ..environment::describe(start, rayon::current_num_threads(), (&record.text, record.audit_seconds))
+        },
     };
     record.folder.write("summary.json", summary.to_json().as_bytes())?;
     Ok(summary)

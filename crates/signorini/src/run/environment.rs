@@ -9,6 +9,7 @@ pub fn describe(start: std::time::Instant, threads: usize, (text, audit_seconds)
         wall_seconds: start.elapsed().as_secs_f64(),
         cpu_seconds: cpu_seconds(),
         peak_memory: peak_memory(),
+        estimated_memory: None,
         threads,
         audit_seconds,
         input_hash: format!("{:016x}", fnv1a(text.as_bytes())),
@@ -26,8 +27,19 @@ fn cpu_seconds() -> Option<f64> {
 
 /// Largest resident memory in bytes, where the system tells.
 fn peak_memory() -> Option<u64> {
+    status("VmHWM:")
+}
+
+/// Resident memory in bytes, where the system tells.
+#[cfg(feature = "petsc")]
+pub fn resident_memory() -> Option<u64> {
+    status("VmRSS:")
+}
+
+/// A number of bytes of the process, by its name.
+fn status(name: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|l| l.strip_prefix(name))?;
     line.trim().trim_end_matches("kB").trim().parse::<u64>().ok().map(|k| k * 1024)
 }
 

@@ -12,6 +12,7 @@ mod large;
 mod masters;
 mod mixed;
 mod pores;
+mod processes;
 
 use signorini_cells::{
     CellBody, CellMaterial, CellSolid, CellTree, CellsError, Discretisation, Domain, Elastic, Place, Region, Space,

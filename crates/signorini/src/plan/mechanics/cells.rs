@@ -9,6 +9,7 @@ use crate::problem::{
     CaseError, CellFunctions, CellIntegration, CellsBody, Composed, Contact, Geometry, IslandsKey, List,
     Shape as Stated, Space as In, Value,
 };
+use crate::processes;
 use signorini_cells::description::{
     Built, Cells, Description, Geometry as Made, Part, Refinement, Scalar, Shape, build,
 };
@@ -95,7 +96,9 @@ impl Planner<'_> {
         made.density = self.density(key.density.as_ref())?;
         made.bounds = bounds;
         made.modulus = modulus;
-        made.memory = memory_at_hand();
+        made.processes = processes::several();
+        let on_this_machine = made.processes.as_ref().map_or(1, |all| processes::started_here().min(all.count()));
+        made.memory = processes::least(memory_at_hand() / on_this_machine as f64);
         made.refinement = self.refinement(key)?;
         if key.functions == Some(CellFunctions::Trunk) {
             made.products = Products::Trunk;

@@ -4,6 +4,7 @@ use crate::expression::Scope;
 use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE, PRESSURE};
 use crate::problem::{CaseError, ImageGeometry, List, Value};
+use crate::processes;
 use signorini_cells::image::raw::RawHeader;
 use signorini_cells::image::{self, Endian, ImageData, Number};
 
@@ -62,7 +63,11 @@ impl Planner<'_> {
                     .map_err(|wrong| problem.error(&stated.file, format!("`{}`: {wrong}", stated.file)))?
             }
             (None, None) if problem.source.folder().join(&stated.file).is_dir() => {
-                image::read(&problem.source.folder().join(&stated.file)).map_err(told)?
+                let read = image::read(&problem.source.folder().join(&stated.file)).map_err(told);
+                let image = processes::all(read)?;
+                let bytes: Vec<u8> = image.values.iter().flat_map(|v| v.to_le_bytes()).collect();
+                self.check_same(&stated.file, &bytes)?;
+                image
             }
             (None, None) => {
                 let (_, first) = self.read_file(&stated.file)?;

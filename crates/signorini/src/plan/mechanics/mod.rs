@@ -18,13 +18,14 @@ mod winches;
 pub use fields::Wrong;
 pub use motion::{GRAVITY, Motion};
 
-use super::head::Head;
+use super::head::{Head, Size};
 use super::history::{ArcLengthIncrement, SystemIncrements};
 use super::memory::check_memory;
 use super::pieces::{Pieces, UNITE};
 use super::planner::Planner;
 use crate::problem::units::{LENGTH, Units};
 use crate::problem::{self, Body, CaseError, Problem, Space, UnstableStates};
+use crate::processes;
 use crate::report::{TractionKind, Warning};
 use signorini_geometry::Point;
 use signorini_geometry::rigid_shape::RigidShape;
@@ -138,12 +139,12 @@ pub fn is_system(problem: &Problem) -> bool {
 }
 
 /// Unknowns of a system, what solves its equations, and about how much memory that takes; an error where there is less.
-fn size_of(problem: &Problem, system: &System) -> Result<String, CaseError> {
+fn size_of(problem: &Problem, system: &System) -> Result<Size, CaseError> {
     let unknowns: usize = system.bodies.iter().map(|b| b.unknowns()).sum();
     let how = if system.iterates() { "iterations" } else { "a factorisation" };
     let needed = system.memory();
     check_memory(problem, &format!("{unknowns} unknowns, solved by {how},"), needed)?;
-    Ok(format!("{unknowns} unknowns, solved by {how}, require about {:.2} GiB", needed / f64::from(1u32 << 30)))
+    Ok(Size::new(unknowns, how, needed))
 }
 
 /// Part of its radius that a curve may start deep inside of what it touches without a word.
@@ -266,9 +267,10 @@ impl Planner<'_> {
         self.tell_stretched(&system, &numbers, &mut warnings)?;
         notes.extend(contacts.iter().flat_map(|c| c.notes.iter().cloned()));
         warnings.extend(contacts.iter().flat_map(|c| c.warnings.iter().map(|w| Warning::from(w.as_str()))));
-        if kinds.iter().any(|k| matches!(k, Kind::Solid | Kind::Cells)) {
-            notes.push(size_of(problem, &system)?);
-        }
+        // Where PETSc solves, the size is told as the system is divided.
+        let is_sized = kinds.iter().any(|k| matches!(k, Kind::Solid | Kind::Cells)) && !processes::by_petsc(problem);
+        let size = is_sized.then(|| size_of(problem, &system)).transpose()?;
+        notes.extend(size.iter().map(|size| size.told.clone()));
         if system.contacts.is_empty() && system.constraints.is_empty() && system.bodies.len() > 1 {
             warnings.push("the case has no contact, so the bodies do not interact (add [contacts.NAME])".into());
         }
@@ -285,7 +287,7 @@ impl Planner<'_> {
             warnings.extend(odd_sizes(problem, units, &boxes));
         }
         Ok(MechanicsPlan {
-            head: self.head(warnings)?,
+            head: Head { size, ..self.head(warnings)? },
             space: self.space,
             system,
             kinds,

@@ -24,8 +24,15 @@ struct Spring {
 impl Spring {
     fn new(fails_in: Option<usize>) -> Self {
         let problem = signorini::case::read("spring.toml", signorini::gallery::GALLERY[0].case, &[]).expect("a case");
-        let head =
-            Head { problem, units: None, interpreted: Vec::new(), warnings: Vec::new(), every: 2, pictures: true };
+        let head = Head {
+            size: None,
+            problem,
+            units: None,
+            interpreted: Vec::new(),
+            warnings: Vec::new(),
+            every: 2,
+            pictures: true,
+        };
         Spring { head, force: 0.0, fails_in, refused_in: None }
     }
 }

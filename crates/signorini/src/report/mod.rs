@@ -293,7 +293,7 @@ pub struct Pose {
 /// Values at a point of `output.probes`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Probe {
-    /// Position of the point in the undeformed body. For solids the nearest point of the displayed mesh.
+    /// Position of the point in the undeformed body. Outside of solids and finite cells the nearest point that is shown.
     pub at: [f64; 3],
     /// Displacement of the point.
     pub displacement: [f64; 3],

@@ -267,7 +267,9 @@ fn honest_states_are_answers() {
     for state in [&mut below.before, &mut below.now] {
         state.contacts[0].iter_mut().for_each(|t| (t.x, t.foot) = (down, down));
     }
-    for (name, case) in [("disc", disc()), ("below", below), ("block", block()), ("rope", rope()), ("ropes", crossing_ropes())] {
+    for (name, case) in
+        [("disc", disc()), ("below", below), ("block", block()), ("rope", rope()), ("ropes", crossing_ropes())]
+    {
         let findings = audit(&case.setting, Some(&case.before), &case.now, &case.stability);
         assert_eq!(Verdict::of(&findings), Verdict::RightWithin, "{name}: {findings:#?}");
         assert!(findings.len() >= 4, "{name}: {findings:#?}");

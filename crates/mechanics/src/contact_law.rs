@@ -398,6 +398,11 @@ impl ContactLaw {
         self.stiffness.iter_mut().zip(&self.areas).for_each(|(c, area)| *c = force_per_gap / area);
     }
 
+    /// Whether something simpler stands in its place.
+    pub(crate) fn is_simplified(&self) -> bool {
+        self.stated.is_some()
+    }
+
     /// Ends what [`simplify`](ContactLaw::simplify) began.
     pub(crate) fn restore(&mut self) {
         let Some(stated) = self.stated.take() else { return };

@@ -10,7 +10,6 @@ use crate::equilibrium::Way;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::points::Order;
-use crate::simpler::SimplerFriction;
 use crate::slack::{SOFT, STIFFER};
 use crate::system::{System, SystemState};
 
@@ -23,7 +22,7 @@ const SPRINGS: f64 = 1e-3;
 
 impl System {
     /// A state near equilibrium, with multipliers that bear what acts, of ropes that touch something; none where there are no
-    /// such ropes, a contact is not of points of its own, or none is found.
+    /// such ropes, a contact cannot give way, or none is found.
     ///
     /// # Errors
     /// An interruption.
@@ -35,13 +34,16 @@ impl System {
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Option<SystemState>, IncrementError> {
         let stiffest = self.bodies.iter_mut().map(|body| body.soften(1.0)).fold(0.0, f64::max);
-        let are_points = self.contacts.iter().all(|contact| contact.as_points().is_some());
-        if stiffest == 0.0 || self.contacts.is_empty() || !are_points || self.step.is_some() {
+        let is_simplified = self.contacts.iter().any(|contact| contact.law().is_simplified());
+        if stiffest == 0.0 || self.contacts.is_empty() || is_simplified || self.step.is_some() {
             return Ok(None);
         }
-        let found = self.down_to_rest(start, time, stiffest, solved, report);
+        let found = match self.contacts.iter_mut().all(|contact| contact.give_way(None)) {
+            true => self.down_to_rest(start, time, stiffest, solved, report),
+            false => return Ok(None),
+        };
         self.bodies.iter_mut().for_each(|body| _ = body.soften(1.0));
-        self.contacts.iter_mut().for_each(|contact| contact.law_mut().restore());
+        self.contacts.iter_mut().for_each(|contact| _ = contact.give_way(None));
         match found {
             Ok(state) => Ok(Some(state)),
             Err(IncrementError::Interrupted) => Err(IncrementError::Interrupted),
@@ -67,12 +69,7 @@ impl System {
         let (mut share, mut scale) = ((SOFT * acts / stiffest).min(1.0), FIRST_SCALE);
         loop {
             self.bodies.iter_mut().for_each(|body| _ = body.soften(share));
-            self.contacts.iter_mut().for_each(|contact| {
-                let law = contact.law_mut();
-                law.restore();
-                law.simplify(SimplerFriction::Smooth);
-                law.give_way(scale * per_size);
-            });
+            self.contacts.iter_mut().for_each(|contact| _ = contact.give_way(Some(scale * per_size)));
             let mut problem = self.problem(&state, time, *solved)?;
             problem.way = Way::Down;
             let found = problem.held_step(SPRINGS * per_size, &state, report)?;

@@ -164,6 +164,12 @@ pub trait Iterated {
     /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
     fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
 
+    /// From now on gives way by a force per penetration, a function of the gap alone, without friction; as before with none.
+    /// Whether it can do so.
+    fn give_way(&mut self, _force_per_gap: Option<f64>) -> bool {
+        false
+    }
+
     /// Forgets what it carried besides the tractions of its law, not where slips count from.
     fn unload(&mut self) {}
 

@@ -7,9 +7,9 @@ use super::SolidBody;
 use super::spatial::spatial;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
+use signorini_geometry::Point;
 use signorini_material::law::{Plastic, StressLaw};
 use signorini_material::{Elastic, Space};
-use signorini_geometry::Point;
 use signorini_mechanics::{BodyState, Constitution, PointValues, UnstableMaterial};
 
 impl<const D: usize> SolidBody<D> {

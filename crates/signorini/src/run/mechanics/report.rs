@@ -14,7 +14,8 @@ use crate::run::record::Record;
 use signorini_contact::Status;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::{
-    AxisChoice, BodyState, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState, rigid_body,
+    AxisChoice, BodyState, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
+    rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;

@@ -99,6 +99,9 @@ impl ContactShown {
     }
 }
 
+/// Lines of the key for contacts.
+const MOST_KEYS: usize = 6;
+
 /// Draws for every contact what the first body carries, dots where it slips, and tells for the key how much that is. The
 /// pressure of surfaces is shown otherwise.
 pub fn draw(
@@ -110,12 +113,18 @@ pub fn draw(
 ) -> Vec<(Sign, String)> {
     let mut key: Vec<(Sign, String)> = Vec::new();
     let mut slips = false;
-    for contact in shown.contacts.iter().filter(|c| c.surface.is_none()) {
+    let largest = |c: &ContactShown| c.closed().iter().map(|&k| c.carried(k).norm()).fold(0.0, f64::max);
+    let drawn: Vec<(&ContactShown, f64)> = (shown.contacts.iter())
+        .filter(|c| c.surface.is_none())
+        .map(|c| (c, largest(c)))
+        .filter(|(_, most)| *most > 0.0)
+        .collect();
+    // Many have one scale and one line of the key.
+    let many = drawn.len() > MOST_KEYS;
+    for &(contact, own) in &drawn {
         let closed = contact.closed();
-        let most = closed.iter().map(|&k| contact.carried(k).norm()).fold(0.0, f64::max);
-        if most == 0.0 {
-            continue;
-        }
+        let alike = drawn.iter().filter(|(other, _)| other.carries == contact.carries);
+        let most = if many { alike.clone().map(|(_, most)| *most).fold(0.0, f64::max) } else { own };
         let mut feet: Vec<(f64, f64)> = Vec::new();
         for &k in closed.iter().step_by(closed.len().div_ceil(LINES)) {
             let x = contact.at(k);
@@ -133,13 +142,21 @@ pub fn draw(
                 Sign::Dot(FRONT).draw(&mut page.svg, a - 11.0, b);
             }
         }
-        let on = if shown.contacts.len() > 1 { contact.fields.name.as_str() } else { "contact" };
+        let count = alike.count();
+        let on = match shown.contacts.len() {
+            1 => "contact".to_string(),
+            _ if many && count > 1 => format!("{count} contacts"),
+            _ => contact.fields.name.clone(),
+        };
         let what = match contact.carries {
             TractionKind::Force => format!("forces on {on}"),
             TractionKind::LineLoad => format!("force per length on {on}"),
             TractionKind::Pressure => format!("traction on {on}"),
         };
-        key.push((Sign::Line(viridis(0.15)), contact.unit(labels, &format!("{what}, up to {}", three_digits(most)))));
+        let told = contact.unit(labels, &format!("{what}, up to {}", three_digits(most)));
+        if key.iter().all(|(_, known)| *known != told) {
+            key.push((Sign::Line(viridis(0.15)), told));
+        }
     }
     if slips {
         key.push((Sign::Dot(FRONT), "slips".into()));

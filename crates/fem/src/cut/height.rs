@@ -14,7 +14,6 @@
 mod sheet;
 
 use super::partition::{CellPartition, CellRule, QuadraturePoint, SurfacePoint};
-use super::roots::scan_roots;
 use sheet::{Crossing, MIN_SLOPE, Sheet, Slopes, crossing, slopes, steepest, with};
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
@@ -246,10 +245,7 @@ impl<const D: usize> Resolver<'_, D> {
         let ends = [b.min[k], b.max[k]];
         let mut roots: Vec<(f64, usize)> = Vec::with_capacity(active.len());
         for &(number, sheet) in active {
-            let found = scan_roots(ends[0], ends[1], pieces, |t| {
-                let (value, gradient) = sheet.value_and_gradient(&with(x, k, t));
-                (value, gradient[k])
-            });
+            let found = sheet.roots(x, k, ends, pieces);
             roots.extend(found.into_iter().map(|t| (t, number)));
         }
         roots.sort_by(|a, c| a.0.total_cmp(&c.0));

@@ -58,6 +58,23 @@ impl<const D: usize> Sheet<'_, D> {
         }
     }
 
+    /// The roots on a line through `x` in direction `k`; see [`scan_roots`].
+    pub fn roots(&self, x: &Point<D>, k: usize, ends: [f64; 2], pieces: usize) -> Vec<f64> {
+        let scan = |f: &dyn Fn(f64) -> (f64, f64)| scan_roots(ends[0], ends[1], pieces, f);
+        match self {
+            Sheet::Given(shape) => {
+                let mut found = Vec::new();
+                shape.on_line(x, k, ends, &mut |f| found = scan(f));
+                found
+            }
+            Sheet::Face { of, axis, at } => of.roots(&with(x, *axis, *at), k, ends, pieces),
+            Sheet::Graph { .. } => scan(&|t| {
+                let (value, gradient) = self.value_and_gradient(&with(x, k, t));
+                (value, gradient[k])
+            }),
+        }
+    }
+
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         match self {
             Sheet::Given(shape) => shape.range(b),
@@ -80,11 +97,7 @@ fn height<const D: usize>(sheet: &Sheet<'_, D>, x: &Point<D>, axis: usize, ends:
     if (low < 0.0) == (high < 0.0) {
         return (if low.abs() < high.abs() { ends[0] } else { ends[1] }, false);
     }
-    let found = scan_roots(ends[0], ends[1], 1, |t| {
-        let (value, gradient) = sheet.value_and_gradient(&with(x, axis, t));
-        (value, gradient[axis])
-    });
-    (found.first().copied().unwrap_or(ends[1]), true)
+    (sheet.roots(x, axis, *ends, 1).first().copied().unwrap_or(ends[1]), true)
 }
 
 /// Whether a function has zeros in a box.

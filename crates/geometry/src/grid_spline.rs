@@ -87,6 +87,7 @@ impl<const N: usize> GridSpline<N> {
     }
 
     /// The interval of an axis in which a coordinate lies, and where in it, from 0 to 1.
+    #[inline]
     fn interval(&self, a: usize, x: f64) -> (usize, f64) {
         let t = ((x - self.origin[a]) / self.spacing[a]).clamp(0.0, (self.count[a] - 1) as f64);
         let cell = (t as usize).min(self.count[a] - 2);
@@ -225,6 +226,7 @@ struct GridLine {
 
 impl GridLine {
     /// Value and slope at a coordinate; beyond the ends of the grid the spline goes on as at them, with the slope there.
+    #[inline]
     fn value_and_slope(&self, x: f64) -> (f64, f64) {
         let intervals = self.coefficients.len() - 3;
         let t = ((x - self.origin) / self.spacing - self.first as f64).clamp(0.0, intervals as f64);
@@ -235,10 +237,12 @@ impl GridLine {
     }
 }
 
+#[inline]
 fn add(sum: &mut [f64; 4], factor: f64, c: &[f64]) {
     sum.iter_mut().zip(c).for_each(|(sum, c)| *sum += factor * c);
 }
 
+#[inline]
 fn dot(w: &[f64; 4], c: &[f64]) -> f64 {
     w.iter().zip(c).map(|(w, c)| w * c).sum()
 }
@@ -263,6 +267,7 @@ fn contracted(tensor: &[f64], size: usize, sums: &[(usize, [f64; 4])]) -> Vec<f6
 
 /// The splines that do not vanish on an interval, at `s` from 0 to 1, and their derivatives up to an order by a variable
 /// that grows by `1 / rate` along the interval.
+#[inline]
 fn weights<const ORDER: usize>(s: f64, rate: f64) -> Weights {
     let r = 1.0 - s;
     let mut out = [[0.0; 4]; 3];

@@ -191,16 +191,31 @@ impl<const D: usize> Slopes<D> {
     }
 }
 
-pub(super) fn slopes<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -> Slopes<D> {
+/// What is done where no direction is steep.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum IfFlat {
+    /// The box is divided: the first samples that show it are enough.
+    Divide,
+    /// The steepest of them is taken.
+    TakeSteepest,
+}
+
+pub(super) fn slopes<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize], flat: IfFlat) -> Slopes<D> {
     let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
+    let slopes = |low: Vector<D>, high: Vector<D>| Slopes { least: low.sup(&-high), most: high.sup(&-low) };
     for x in samples(b, axes) {
         let gradient = sheet.value_and_gradient(&x).1;
         let norm = axes.iter().map(|&k| gradient[k] * gradient[k]).sum::<f64>().sqrt();
         let direction = gradient / norm.max(f64::MIN_POSITIVE);
         low = low.inf(&direction);
         high = high.sup(&direction);
+        let so_far = slopes(low, high);
+        let is_flat = |k: &usize| so_far.least[*k] < MIN_SLOPE && !so_far.is_constant(*k);
+        if flat == IfFlat::Divide && axes.iter().all(is_flat) {
+            break;
+        }
     }
-    Slopes { least: low.sup(&-high), most: high.sup(&-low) }
+    slopes(low, high)
 }
 
 /// The direction with the largest of these, and that slope.

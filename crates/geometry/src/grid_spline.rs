@@ -1,6 +1,6 @@
 //! Functions given by their values on a regular grid: images, height maps, sampled level sets.
 
-use crate::implicit::ImplicitShape;
+use crate::implicit::{ImplicitShape, OnLine};
 use crate::jet::Jet;
 use crate::shape::ShapeError;
 use crate::{Aabb, Matrix, Vector};
@@ -12,11 +12,15 @@ pub struct GridSpline<const N: usize> {
     origin: Vector<N>,
     spacing: [f64; N],
     count: [usize; N],
+    /// Of the splines on the grid and one beyond each of its ends, where they go on in a straight line, `2 c_0 - c_1`: every
+    /// point sees four in each direction.
     coefficients: Vec<f64>,
+    /// Steps in `coefficients` from one to the next in each direction.
+    stride: [usize; N],
 }
 
-/// Values, first and second derivatives of the four splines on a cell, and their places.
-type Weights = ([[f64; 4]; 3], [usize; 4]);
+/// Values, first and second derivatives of the four splines on an interval.
+type Weights = [[f64; 4]; 3];
 
 impl<const N: usize> GridSpline<N> {
     /// The spline through values at `origin + index * spacing`, the last index running fastest. Beyond the grid it goes
@@ -43,21 +47,28 @@ impl<const N: usize> GridSpline<N> {
             return Err(ShapeError::new("values", format!("{value} is not a finite number")));
         }
         let mut coefficients = values;
+        // One axis after the other gets its coefficients, and two more of them than values; the last one runs fastest still.
+        let mut sizes = count;
         for axis in 0..N {
             let n = count[axis];
-            let stride: usize = count[axis + 1..].iter().product();
+            let inner: usize = sizes[axis + 1..].iter().product();
+            let outer: usize = sizes[..axis].iter().product();
+            let mut wider = vec![0.0; outer * (n + 2) * inner];
             let mut line = vec![0.0; n];
-            for start in (0..coefficients.len()).filter(|k| (k / stride).is_multiple_of(n)) {
-                for (m, value) in line.iter_mut().enumerate() {
-                    *value = coefficients[start + m * stride];
-                }
-                prefilter(&mut line);
-                for (m, value) in line.iter().enumerate() {
-                    coefficients[start + m * stride] = *value;
+            for (from, to) in coefficients.chunks_exact(n * inner).zip(wider.chunks_exact_mut((n + 2) * inner)) {
+                for k in 0..inner {
+                    line.iter_mut().enumerate().for_each(|(m, value)| *value = from[m * inner + k]);
+                    prefilter(&mut line);
+                    to[k] = 2.0 * line[0] - line[1];
+                    line.iter().enumerate().for_each(|(m, value)| to[(m + 1) * inner + k] = *value);
+                    to[(n + 1) * inner + k] = 2.0 * line[n - 1] - line[n - 2];
                 }
             }
+            coefficients = wider;
+            sizes[axis] = n + 2;
         }
-        Ok(GridSpline { origin, spacing, count, coefficients })
+        let stride = std::array::from_fn(|a| sizes[a + 1..].iter().product());
+        Ok(GridSpline { origin, spacing, count, coefficients, stride })
     }
 
     /// Value, gradient and Hessian.
@@ -75,83 +86,126 @@ impl<const N: usize> GridSpline<N> {
         self.summed::<0>(x).value
     }
 
-    /// Value and derivatives up to an order, one direction summed after the other.
+    /// The interval of an axis in which a coordinate lies, and where in it, from 0 to 1.
+    #[inline]
+    fn interval(&self, a: usize, x: f64) -> (usize, f64) {
+        let t = ((x - self.origin[a]) / self.spacing[a]).clamp(0.0, (self.count[a] - 1) as f64);
+        let cell = (t as usize).min(self.count[a] - 2);
+        (cell, t - cell as f64)
+    }
+
+    /// Value and derivatives up to an order: sums of rows of four coefficients along the last axis, then along it.
     fn summed<const ORDER: usize>(&self, x: &Vector<N>) -> Jet<N> {
-        let axes: [Weights; N] =
-            std::array::from_fn(|a| weights((x[a] - self.origin[a]) / self.spacing[a], self.count[a], self.spacing[a]));
-        self.summed_from::<ORDER>(0, 0, &axes)
-    }
-
-    /// The sum over the directions from `axis` on, of the coefficients that begin at `place`.
-    fn summed_from<const ORDER: usize>(&self, axis: usize, place: usize, axes: &[Weights; N]) -> Jet<N> {
-        let mut sum = Jet { value: 0.0, gradient: Vector::<N>::zeros(), hessian: Matrix::<N>::zeros() };
-        let ([w, d, dd], index) = &axes[axis];
-        for m in 0..4 {
-            let place = place * self.count[axis] + index[m];
-            if axis + 1 == N {
-                let c = self.coefficients[place];
-                sum.value += w[m] * c;
-                if ORDER > 0 {
-                    sum.gradient[axis] += d[m] * c;
-                }
-                if ORDER > 1 {
-                    sum.hessian[(axis, axis)] += dd[m] * c;
-                }
-                continue;
-            }
-            let rest = self.summed_from::<ORDER>(axis + 1, place, axes);
-            sum.value += w[m] * rest.value;
-            if ORDER > 0 {
-                sum.gradient[axis] += d[m] * rest.value;
-                (axis + 1..N).for_each(|p| sum.gradient[p] += w[m] * rest.gradient[p]);
-            }
-            if ORDER > 1 {
-                sum.hessian[(axis, axis)] += dd[m] * rest.value;
-                for p in axis + 1..N {
-                    sum.hessian[(axis, p)] += d[m] * rest.gradient[p];
-                    (p..N).for_each(|q| sum.hessian[(p, q)] += w[m] * rest.hessian[(p, q)]);
-                }
-            }
-        }
-        if ORDER > 1 && axis == 0 {
-            for p in 0..N {
-                (0..p).for_each(|q| sum.hessian[(p, q)] = sum.hessian[(q, p)]);
-            }
-        }
-        sum
-    }
-
-    /// Bounds of the values in a box: those of the coefficients of the splines that do not vanish there.
-    pub fn range(&self, low: &Vector<N>, high: &Vector<N>) -> [f64; 2] {
-        let window: [(usize, usize); N] = std::array::from_fn(|a| {
-            let cell = |x: f64| {
-                let t = ((x - self.origin[a]) / self.spacing[a]).clamp(0.0, (self.count[a] - 1) as f64);
-                (t.floor() as usize).min(self.count[a] - 2)
-            };
-            // The coefficient beyond an end is no further away than the two that it is made of make it.
-            (cell(low[a]).saturating_sub(1), (cell(high[a]) + 2).min(self.count[a] - 1))
+        let mut first = 0;
+        let axes: [Weights; N] = std::array::from_fn(|a| {
+            let (cell, s) = self.interval(a, x[a]);
+            first += cell * self.stride[a];
+            weights::<ORDER>(s, 1.0 / self.spacing[a])
         });
-        let sizes: [usize; N] = std::array::from_fn(|a| window[a].1 - window[a].0 + 1);
-        let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
-        for number in 0..sizes.iter().product() {
-            let (mut rest, mut place, mut index) = (number, 0, [0; N]);
-            for a in (0..N).rev() {
-                index[a] = window[a].0 + rest % sizes[a];
-                rest /= sizes[a];
+        let last = N - 1;
+        let (mut value, mut slope, mut curvature) = ([0.0; 4], [[0.0; 4]; N], [[[0.0; 4]; N]; N]);
+        for row in 0..1usize << (2 * last) {
+            let m: [usize; N] = std::array::from_fn(|a| if a < last { (row >> (2 * (last - 1 - a))) & 3 } else { 0 });
+            let start = first + (0..last).map(|a| m[a] * self.stride[a]).sum::<usize>();
+            let c = &self.coefficients[start..start + 4];
+            // The product over the axes before the last, of derivatives along two of them or none.
+            let product = |order: [usize; N]| (0..last).map(|a| axes[a][order[a]][m[a]]).product::<f64>();
+            add(&mut value, product([0; N]), c);
+            for p in 0..if ORDER > 0 { last } else { 0 } {
+                let along = |p: usize| std::array::from_fn::<usize, N, _>(|a| usize::from(a == p));
+                add(&mut slope[p], product(along(p)), c);
+                for q in p..if ORDER > 1 { last } else { 0 } {
+                    let (p_order, q_order) = (along(p), along(q));
+                    add(&mut curvature[p][q], product(std::array::from_fn(|a| p_order[a] + q_order[a])), c);
+                }
             }
-            for a in 0..N {
-                place = place * self.count[a] + index[a];
+        }
+        let [w, d, dd] = &axes[last];
+        let mut jet = Jet { value: dot(w, &value), gradient: Vector::<N>::zeros(), hessian: Matrix::<N>::zeros() };
+        if ORDER > 0 {
+            (0..last).for_each(|p| jet.gradient[p] = dot(w, &slope[p]));
+            jet.gradient[last] = dot(d, &value);
+        }
+        if ORDER > 1 {
+            for p in 0..last {
+                for q in p..last {
+                    jet.hessian[(p, q)] = dot(w, &curvature[p][q]);
+                    jet.hessian[(q, p)] = jet.hessian[(p, q)];
+                }
+                jet.hessian[(p, last)] = dot(d, &slope[p]);
+                jet.hessian[(last, p)] = jet.hessian[(p, last)];
             }
-            let c = self.coefficients[place];
-            bounds = [bounds[0].min(c), bounds[1].max(c)];
+            jet.hessian[(last, last)] = dot(dd, &value);
         }
-        let at_an_end = (0..N).any(|a| window[a].0 == 0 || window[a].1 == self.count[a] - 1);
-        if at_an_end {
-            // Extrapolated coefficients `2 c_0 - c_1` reach at most once as far again in each direction.
-            let reach = f64::from((1u32 << N) - 1) * (bounds[1] - bounds[0]);
-            bounds = [bounds[0] - reach, bounds[1] + reach];
+        jet
+    }
+
+    /// Bounds of the values in a box: those of the coefficients of the splines that do not vanish there and, where these
+    /// leave a zero possible, of the Bézier points of the polynomials.
+    pub fn range(&self, low: &Vector<N>, high: &Vector<N>) -> [f64; 2] {
+        let ends: [[(usize, f64); 2]; N] =
+            std::array::from_fn(|a| [self.interval(a, low[a]), self.interval(a, high[a])]);
+        let sizes: [usize; N] = std::array::from_fn(|a| ends[a][1].0 - ends[a][0].0 + 4);
+        let first: usize = (0..N).map(|a| ends[a][0].0 * self.stride[a]).sum();
+        let mut window = Vec::with_capacity(sizes.iter().product());
+        for mut row in 0..sizes[..N - 1].iter().product() {
+            let mut start = first;
+            for a in (0..N - 1).rev() {
+                start += row % sizes[a] * self.stride[a];
+                row /= sizes[a];
+            }
+            window.extend_from_slice(&self.coefficients[start..start + sizes[N - 1]]);
         }
-        bounds
+        let bounds = bounds_of(&window);
+        if bounds[0] > 0.0 || bounds[1] < 0.0 {
+            return bounds;
+        }
+        // The axis that runs slowest is replaced and runs fastest then, N times.
+        for [(from, s), (to, e)] in ends {
+            window = if from == to && s == e {
+                contracted(&window, to - from + 4, &[(0, weights::<0>(s, 1.0)[0])])
+            } else {
+                let mut points = Vec::with_capacity(3 * (to - from) + 4);
+                for cell in from..=to {
+                    let low = if cell == from { s } else { 0.0 };
+                    let high = if cell == to { e } else { 1.0 };
+                    // The first point of an interval is the last one of that before.
+                    for j in usize::from(cell > from)..4 {
+                        let at = |i: usize| if i < j { high } else { low };
+                        points.push((cell - from, polar([at(0), at(1), at(2)])));
+                    }
+                }
+                contracted(&window, to - from + 4, &points)
+            };
+        }
+        bounds_of(&window)
+    }
+
+    /// Coefficients of the cubic spline along a line in direction `axis` through `x`, of the intervals between two
+    /// coordinates.
+    fn line(&self, x: &Vector<N>, axis: usize, ends: [f64; 2]) -> GridLine {
+        let [from, to] = ends.map(|t| self.interval(axis, t).0);
+        let mut first = from * self.stride[axis];
+        let across: [[f64; 4]; N] = std::array::from_fn(|a| {
+            if a == axis {
+                return [1.0, 0.0, 0.0, 0.0];
+            }
+            let (cell, s) = self.interval(a, x[a]);
+            first += cell * self.stride[a];
+            weights::<0>(s, 1.0)[0]
+        });
+        let mut coefficients = vec![0.0; to - from + 4];
+        for row in 0..1usize << (2 * (N - 1)) {
+            let (mut start, mut weight, mut rest) = (first, 1.0, row);
+            for a in (0..N).filter(|a| *a != axis) {
+                start += (rest & 3) * self.stride[a];
+                weight *= across[a][rest & 3];
+                rest >>= 2;
+            }
+            let along = self.coefficients[start..].iter().step_by(self.stride[axis]);
+            coefficients.iter_mut().zip(along).for_each(|(sum, c)| *sum += weight * c);
+        }
+        GridLine { origin: self.origin[axis], spacing: self.spacing[axis], first: from, coefficients }
     }
 
     /// The smallest and the largest corner of the grid.
@@ -161,40 +215,87 @@ impl<const N: usize> GridSpline<N> {
     }
 }
 
-/// The splines that do not vanish at `t` cells from the start of `n` values `h` apart.
-fn weights(t: f64, n: usize, h: f64) -> Weights {
-    let t = t.clamp(0.0, (n - 1) as f64);
-    let cell = (t.floor() as usize).min(n - 2);
-    let s = t - cell as f64;
-    let mut weights = [
-        [
-            (1.0 - s).powi(3) / 6.0,
-            (4.0 - 6.0 * s * s + 3.0 * s.powi(3)) / 6.0,
-            (1.0 + 3.0 * s + 3.0 * s * s - 3.0 * s.powi(3)) / 6.0,
-            s.powi(3) / 6.0,
-        ],
-        [-0.5 * (1.0 - s).powi(2) / h, (-2.0 * s + 1.5 * s * s) / h, (0.5 + s - 1.5 * s * s) / h, 0.5 * s * s / h],
-        [(1.0 - s) / (h * h), (3.0 * s - 2.0) / (h * h), (1.0 - 3.0 * s) / (h * h), s / (h * h)],
+/// A spline along a line.
+struct GridLine {
+    origin: f64,
+    spacing: f64,
+    /// The interval that the first four coefficients belong to.
+    first: usize,
+    coefficients: Vec<f64>,
+}
+
+impl GridLine {
+    /// Value and slope at a coordinate; beyond the ends of the grid the spline goes on as at them, with the slope there.
+    #[inline]
+    fn value_and_slope(&self, x: f64) -> (f64, f64) {
+        let intervals = self.coefficients.len() - 3;
+        let t = ((x - self.origin) / self.spacing - self.first as f64).clamp(0.0, intervals as f64);
+        let cell = (t as usize).min(intervals - 1);
+        let [w, d, _] = weights::<1>(t - cell as f64, 1.0 / self.spacing);
+        let c = &self.coefficients[cell..cell + 4];
+        (dot(&w, c), dot(&d, c))
+    }
+}
+
+#[inline]
+fn add(sum: &mut [f64; 4], factor: f64, c: &[f64]) {
+    sum.iter_mut().zip(c).for_each(|(sum, c)| *sum += factor * c);
+}
+
+#[inline]
+fn dot(w: &[f64; 4], c: &[f64]) -> f64 {
+    w.iter().zip(c).map(|(w, c)| w * c).sum()
+}
+
+fn bounds_of(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+}
+
+/// A tensor whose slowest index, of `size` values, is replaced by one over sums of four, each from a place on; that index
+/// runs fastest then.
+fn contracted(tensor: &[f64], size: usize, sums: &[(usize, [f64; 4])]) -> Vec<f64> {
+    let inner = tensor.len() / size;
+    let mut out = Vec::with_capacity(inner * sums.len());
+    for k in 0..inner {
+        for (place, w) in sums {
+            let at = place * inner + k;
+            out.push((0..4).map(|m| w[m] * tensor[at + m * inner]).sum());
+        }
+    }
+    out
+}
+
+/// The splines that do not vanish on an interval, at `s` from 0 to 1, and their derivatives up to an order by a variable
+/// that grows by `1 / rate` along the interval.
+#[inline]
+fn weights<const ORDER: usize>(s: f64, rate: f64) -> Weights {
+    let r = 1.0 - s;
+    let mut out = [[0.0; 4]; 3];
+    out[0] = [
+        r * r * r / 6.0,
+        (4.0 - 6.0 * s * s + 3.0 * s * s * s) / 6.0,
+        (4.0 - 6.0 * r * r + 3.0 * r * r * r) / 6.0,
+        s * s * s / 6.0,
     ];
-    let mut index = [0; 4];
-    for (m, index) in index.iter_mut().enumerate() {
-        *index = (cell + m).saturating_sub(1).min(n - 1);
+    if ORDER > 0 {
+        let half = 0.5 * rate;
+        out[1] = [-half * r * r, half * s * (3.0 * s - 4.0), half * r * (4.0 - 3.0 * r), half * s * s];
     }
-    // Beyond the ends the coefficients go on in a straight line, `2 c_0 - c_1`: what lies there is folded into the two
-    // outermost ones.
-    for order in &mut weights {
-        if cell == 0 {
-            let beyond = std::mem::take(&mut order[0]);
-            order[1] += 2.0 * beyond;
-            order[2] -= beyond;
-        }
-        if cell == n - 2 {
-            let beyond = std::mem::take(&mut order[3]);
-            order[2] += 2.0 * beyond;
-            order[1] -= beyond;
-        }
+    if ORDER > 1 {
+        let square = rate * rate;
+        out[2] = [square * r, square * (3.0 * s - 2.0), square * (3.0 * r - 2.0), square * s];
     }
-    (weights, index)
+    out
+}
+
+/// The polar form of the cubic on an interval as a sum of the four coefficients: its values at `[s, s, s]` are those of the
+/// cubic, and those at `low` and `high` alone the Bézier points of the part between them.
+fn polar([u, v, w]: [f64; 3]) -> [f64; 4] {
+    // De Boor's algorithm with another argument in each stage.
+    let d = [[1.0 - u, 2.0 + u], [2.0 - u, 1.0 + u], [3.0 - u, u]].map(|d| d.map(|x| x / 3.0));
+    let e = [[1.0 - v, 1.0 + v], [2.0 - v, v]].map(|e| e.map(|x| x / 2.0));
+    let f = [(1.0 - w) * e[0][0], (1.0 - w) * e[0][1] + w * e[1][0], w * e[1][1]];
+    [f[0] * d[0][0], f[0] * d[0][1] + f[1] * d[1][0], f[1] * d[1][1] + f[2] * d[2][0], f[2] * d[2][1]]
 }
 
 /// Coefficients of the cubic spline with natural ends through values: `(c_{i-1} + 4 c_i + c_{i+1}) / 6 = f_i`, with
@@ -237,6 +338,10 @@ impl<const N: usize> ImplicitShape<N> for GridSpline<N> {
     }
     fn range(&self, b: &Aabb<N>) -> Option<[f64; 2]> {
         Some(GridSpline::range(self, &b.min, &b.max))
+    }
+    fn on_line(&self, x: &Vector<N>, axis: usize, ends: [f64; 2], find: &mut OnLine<'_>) {
+        let line = self.line(x, axis, ends);
+        find(&|t| line.value_and_slope(t));
     }
 }
 

@@ -14,8 +14,7 @@
 mod sheet;
 
 use super::partition::{CellPartition, CellRule, QuadraturePoint, SurfacePoint};
-use super::roots::scan_roots;
-use sheet::{Crossing, MIN_SLOPE, Sheet, Slopes, crossing, slopes, steepest, with};
+use sheet::{Crossing, IfFlat, MIN_SLOPE, Sheet, Slopes, crossing, slopes, steepest, with};
 use signorini_geometry::rule::gauss_legendre;
 use signorini_geometry::{Aabb, Point, Vector};
 
@@ -146,7 +145,8 @@ impl<const D: usize> Resolver<'_, D> {
         if let [k] = axes {
             return self.line((&b.min, 1.0), *k, b, &active, PIECES, &Column::of_all(&active), sink);
         }
-        let slopes: Vec<Slopes<D>> = active.iter().map(|(_, sheet)| slopes(sheet, b, axes)).collect();
+        let flat = if depth < MAX_DEPTH { IfFlat::Divide } else { IfFlat::TakeSteepest };
+        let slopes: Vec<Slopes<D>> = active.iter().map(|(_, sheet)| slopes(sheet, b, axes, flat)).collect();
         let (slope, k) =
             steepest(slopes.iter().fold(Vector::repeat(f64::INFINITY), |a: Vector<D>, s| a.inf(&s.least)), axes);
         if slope >= MIN_SLOPE {
@@ -246,10 +246,7 @@ impl<const D: usize> Resolver<'_, D> {
         let ends = [b.min[k], b.max[k]];
         let mut roots: Vec<(f64, usize)> = Vec::with_capacity(active.len());
         for &(number, sheet) in active {
-            let found = scan_roots(ends[0], ends[1], pieces, |t| {
-                let (value, gradient) = sheet.value_and_gradient(&with(x, k, t));
-                (value, gradient[k])
-            });
+            let found = sheet.roots(x, k, ends, pieces);
             roots.extend(found.into_iter().map(|t| (t, number)));
         }
         roots.sort_by(|a, c| a.0.total_cmp(&c.0));

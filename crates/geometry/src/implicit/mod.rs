@@ -16,6 +16,9 @@ pub use shapes::{Complement, Ellipsoid, Function, HalfSpace, Level, Offset, ball
 use crate::jet::Jet;
 use crate::{Aabb, Matrix, Point, Vector};
 
+/// What looks at the value and the slope of a function along a line.
+pub type OnLine<'a> = dyn FnMut(&dyn Fn(f64) -> (f64, f64)) + 'a;
+
 /// A shape `{x : value(x) < 0}`; its boundary is where the value vanishes and the gradient does not.
 pub trait ImplicitShape<const D: usize>: Send + Sync {
     /// Negative inside, positive outside.
@@ -25,6 +28,16 @@ pub trait ImplicitShape<const D: usize>: Send + Sync {
     /// Bounds of the value in a box, where they are known.
     fn range(&self, _: &Aabb<D>) -> Option<[f64; 2]> {
         None
+    }
+    /// Shows the value and the slope along a line through `x` in direction `axis`, by the coordinate in that direction, which
+    /// stays between two ends.
+    fn on_line(&self, x: &Point<D>, axis: usize, _ends: [f64; 2], find: &mut OnLine<'_>) {
+        find(&|t| {
+            let mut y = *x;
+            y[axis] = t;
+            let (value, gradient) = self.value_and_gradient(&y);
+            (value, gradient[axis])
+        });
     }
     /// Second derivatives of the value; central differences of the gradient where there is no formula.
     fn hessian(&self, x: &Point<D>) -> Matrix<D> {
@@ -60,6 +73,9 @@ macro_rules! lent {
             }
             fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
                 (**self).range(b)
+            }
+            fn on_line(&self, x: &Point<D>, axis: usize, ends: [f64; 2], find: &mut OnLine<'_>) {
+                (**self).on_line(x, axis, ends, find);
             }
             fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
                 (**self).value_and_gradient(x)

@@ -1,6 +1,6 @@
 //! Functions, ellipsoids, half spaces, and what lies within a distance of rigid shapes.
 
-use super::ImplicitShape;
+use super::{ImplicitShape, OnLine};
 use crate::jet::Jet;
 use crate::rigid_shape::RigidShape;
 use crate::{Aabb, Matrix, Point, Vector};
@@ -172,6 +172,14 @@ impl<const D: usize, S: ImplicitShape<D>> ImplicitShape<D> for Complement<S> {
     }
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         self.0.range(b).map(|[low, high]| [-high, -low])
+    }
+    fn on_line(&self, x: &Point<D>, axis: usize, ends: [f64; 2], find: &mut OnLine<'_>) {
+        self.0.on_line(x, axis, ends, &mut |f| {
+            find(&|t| {
+                let (value, slope) = f(t);
+                (-value, -slope)
+            });
+        });
     }
     fn value_and_gradient(&self, x: &Point<D>) -> (f64, Vector<D>) {
         let (value, gradient) = self.0.value_and_gradient(x);

@@ -2,7 +2,7 @@
 
 use signorini_geometry::closest::FeatureKind;
 use signorini_geometry::grid_spline::GridSpline;
-use signorini_geometry::implicit::{Function, ImplicitBody, Offset};
+use signorini_geometry::implicit::{Function, ImplicitBody, ImplicitShape, Offset};
 use signorini_geometry::implicit_surface::ImplicitSurface;
 use signorini_geometry::jet::Jet;
 use signorini_geometry::{Aabb, Matrix, Point, Vector};
@@ -129,6 +129,50 @@ fn sampled_fields_converge_with_fourth_order() {
     assert!((coarse / fine).log2() > 3.7, "{coarse:e} {fine:e}");
     assert!(GridSpline::new(Point::<3>::zeros(), [1.0; 3], [3; 3], vec![0.0; 27]).is_err());
     assert!(GridSpline::new(Point::<3>::zeros(), [1.0; 3], [4; 3], vec![0.0; 27]).is_err());
+}
+
+/// Bounds hold all values in boxes within an interval, across several and at the ends, and tell most boxes without zeros
+/// from those with them; lines are what the function is on them.
+#[test]
+fn bounds_and_lines_of_sampled_fields_are_those_of_their_values() {
+    let mut seed = 7u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let (count, h) = ([5, 7, 6], Point::<3>::new(0.5, 0.3, 0.4));
+    let values = (0..count.iter().product()).map(|_| random() - 0.5).collect();
+    let field = GridSpline::new(Point::<3>::zeros(), h.into(), count, values).unwrap();
+    let size = Point::<3>::from_fn(|k, _| h[k] * (count[k] - 1) as f64);
+    let (mut without, mut told) = (0, 0);
+    for i in 0..400 {
+        // Sizes in intervals; every fourth box has no extent in one direction.
+        let share = [0.1, 0.3, 1.0, 2.3][i % 4];
+        let extent = Point::<3>::from_fn(|k, _| if i / 4 % 4 == k { 0.0 } else { share * h[k] });
+        let min = Point::<3>::from_fn(|k, _| (1.2 * random() - 0.1).clamp(0.0, 1.0) * (size[k] - extent[k]));
+        let b = Aabb::new(min, min + extent);
+        let [low, high] = field.range(&b.min, &b.max);
+        let samples = (0..343).map(|j| b.at(&Point::<3>::from_fn(|k, _| f64::from(j / [1, 7, 49][k] % 7) / 6.0)));
+        let [least, most] =
+            (samples.map(|x| field.value(&x))).fold([f64::MAX, f64::MIN], |[l, m], v| [l.min(v), m.max(v)]);
+        assert!(low <= least + 1e-13 && most <= high + 1e-13, "{low} {least} {most} {high}");
+        if share < 0.5 && (least > 0.0 || most < 0.0) {
+            without += 1;
+            told += usize::from(low > 0.0 || high < 0.0);
+        }
+        for axis in 0..3 {
+            field.on_line(&b.min, axis, [b.min[axis], b.max[axis]], &mut |f| {
+                for t in [0.0, 0.37, 0.5, 1.0] {
+                    let mut x = b.min;
+                    x[axis] += t * extent[axis];
+                    let (value, gradient) = field.value_and_gradient(&x);
+                    let (on_line, slope) = f(x[axis]);
+                    assert!((on_line - value).abs() < 1e-13 && (slope - gradient[axis]).abs() < 1e-12);
+                }
+            });
+        }
+    }
+    assert!(without > 100 && 10 * told > 9 * without, "{told} of {without}");
 }
 
 #[test]

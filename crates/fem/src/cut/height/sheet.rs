@@ -58,6 +58,23 @@ impl<const D: usize> Sheet<'_, D> {
         }
     }
 
+    /// The roots on a line through `x` in direction `k`; see [`scan_roots`].
+    pub fn roots(&self, x: &Point<D>, k: usize, ends: [f64; 2], pieces: usize) -> Vec<f64> {
+        let scan = |f: &dyn Fn(f64) -> (f64, f64)| scan_roots(ends[0], ends[1], pieces, f);
+        match self {
+            Sheet::Given(shape) => {
+                let mut found = Vec::new();
+                shape.on_line(x, k, ends, &mut |f| found = scan(f));
+                found
+            }
+            Sheet::Face { of, axis, at } => of.roots(&with(x, *axis, *at), k, ends, pieces),
+            Sheet::Graph { .. } => scan(&|t| {
+                let (value, gradient) = self.value_and_gradient(&with(x, k, t));
+                (value, gradient[k])
+            }),
+        }
+    }
+
     fn range(&self, b: &Aabb<D>) -> Option<[f64; 2]> {
         match self {
             Sheet::Given(shape) => shape.range(b),
@@ -80,11 +97,7 @@ fn height<const D: usize>(sheet: &Sheet<'_, D>, x: &Point<D>, axis: usize, ends:
     if (low < 0.0) == (high < 0.0) {
         return (if low.abs() < high.abs() { ends[0] } else { ends[1] }, false);
     }
-    let found = scan_roots(ends[0], ends[1], 1, |t| {
-        let (value, gradient) = sheet.value_and_gradient(&with(x, axis, t));
-        (value, gradient[axis])
-    });
-    (found.first().copied().unwrap_or(ends[1]), true)
+    (sheet.roots(x, axis, *ends, 1).first().copied().unwrap_or(ends[1]), true)
 }
 
 /// Whether a function has zeros in a box.
@@ -178,16 +191,31 @@ impl<const D: usize> Slopes<D> {
     }
 }
 
-pub(super) fn slopes<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize]) -> Slopes<D> {
+/// What is done where no direction is steep.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum IfFlat {
+    /// The box is divided: the first samples that show it are enough.
+    Divide,
+    /// The steepest of them is taken.
+    TakeSteepest,
+}
+
+pub(super) fn slopes<const D: usize>(sheet: &Sheet<'_, D>, b: &Aabb<D>, axes: &[usize], flat: IfFlat) -> Slopes<D> {
     let (mut low, mut high) = (Vector::<D>::repeat(f64::INFINITY), Vector::<D>::repeat(f64::NEG_INFINITY));
+    let slopes = |low: Vector<D>, high: Vector<D>| Slopes { least: low.sup(&-high), most: high.sup(&-low) };
     for x in samples(b, axes) {
         let gradient = sheet.value_and_gradient(&x).1;
         let norm = axes.iter().map(|&k| gradient[k] * gradient[k]).sum::<f64>().sqrt();
         let direction = gradient / norm.max(f64::MIN_POSITIVE);
         low = low.inf(&direction);
         high = high.sup(&direction);
+        let so_far = slopes(low, high);
+        let is_flat = |k: &usize| so_far.least[*k] < MIN_SLOPE && !so_far.is_constant(*k);
+        if flat == IfFlat::Divide && axes.iter().all(is_flat) {
+            break;
+        }
     }
-    Slopes { least: low.sup(&-high), most: high.sup(&-low) }
+    slopes(low, high)
 }
 
 /// The direction with the largest of these, and that slope.

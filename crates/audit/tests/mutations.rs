@@ -241,6 +241,7 @@ fn crossing_ropes() -> Case {
         dissipated: vec![Some(0.0)],
         dissipated_in_bodies: 0.0,
         in_motion: false,
+        way: Vec::new(),
     };
     let setting = Setting {
         space: Space::ThreeD,

@@ -7,11 +7,13 @@
 //! Newton's method finds the state itself, with multipliers and friction.
 
 use crate::equilibrium::Way;
+use crate::increment::{Strategy, is_curable};
 use crate::increment_error::IncrementError;
 use crate::linear_solver::Solved;
 use crate::points::Order;
 use crate::slack::{SOFT, STIFFER};
 use crate::system::{System, SystemState};
+use signorini_solve::newton::Converged;
 
 /// Force of contact per penetration, in all that acts per size: what is touched gives way by a hundredth of the size at first,
 /// and in the end by less than the sagitta of the chord of a cell, beside which Newton's method finds nothing.
@@ -21,12 +23,30 @@ const LAST_SCALE: f64 = 1e5;
 const SPRINGS: f64 = 1e-3;
 
 impl System {
+    /// Newton's method from where ropes are drawn tight over what they touch; none where that leads nowhere.
+    pub(crate) fn laid_down(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Option<Result<Converged<SystemState>, IncrementError>> {
+        let beside = match self.drawn_tight(start, time, solved, report) {
+            Ok(beside) => beside?,
+            Err(error) => return Some(Err(error)),
+        };
+        match self.by(Strategy::Straight, &beside, time, solved, report) {
+            Err(error) if is_curable(&error) => None,
+            found => Some(found),
+        }
+    }
+
     /// A state near equilibrium, with multipliers that bear what acts, of ropes that touch something; none where there are no
     /// such ropes, a contact cannot give way, or none is found.
     ///
     /// # Errors
     /// An interruption.
-    pub(crate) fn drawn_tight(
+    fn drawn_tight(
         &mut self,
         start: &SystemState,
         time: f64,

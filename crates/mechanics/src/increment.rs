@@ -297,11 +297,10 @@ impl System {
                 return found;
             }
         }
-        if let Some(beside) = self.drawn_tight(start, time, solved, report)? {
-            match self.by(Strategy::Straight, &beside, time, solved, report) {
-                Err(error) if is_curable(&error) => {}
-                found => return found,
-            }
+        // Where there is friction the way decides which state is reached: then only what no other way leads to.
+        let rubs = self.has_friction();
+        if !rubs && let Some(found) = self.laid_down(start, time, solved, report) {
+            return found;
         }
         if self
             .bodies
@@ -326,7 +325,12 @@ impl System {
             };
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
-        self.by(Strategy::Round(failed), start, time, solved, report)
+        match self.by(Strategy::Round(failed), start, time, solved, report) {
+            Err(error) if rubs && is_curable(&error) => {
+                self.laid_down(start, time, solved, report).unwrap_or(Err(error))
+            }
+            found => found,
+        }
     }
 
     /// Whether the state depends on the way to it, by bodies that are held: an increment without a state is to be cut, since

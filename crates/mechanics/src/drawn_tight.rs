@@ -19,10 +19,23 @@ use signorini_solve::newton::Converged;
 /// and in the end by less than the sagitta of the chord of a cell, beside which Newton's method finds nothing.
 const FIRST_SCALE: f64 = 1e2;
 const LAST_SCALE: f64 = 1e5;
+/// Gap, relative to the size of the bodies, that is none but for rounding.
+const NEAR: f64 = 1e-9;
 /// Springs to where the step began, in all that acts per size: what carries nothing stays there.
 const SPRINGS: f64 = 1e-3;
 
 impl System {
+    /// Whether all that may touch is apart in a state: no friction has begun anywhere.
+    pub(crate) fn touches_nothing(&self, state: &SystemState) -> Result<bool, IncrementError> {
+        let near = NEAR * self.size();
+        for k in 0..self.contacts.len() {
+            if self.sites_at_limit(k, state)?.iter().any(|site| site.gap.is_some_and(|gap| gap <= near)) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// Newton's method from where ropes are drawn tight over what they touch; none where that leads nowhere.
     pub(crate) fn laid_down(
         &mut self,

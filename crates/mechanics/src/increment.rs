@@ -231,11 +231,19 @@ impl System {
                     return Err(error);
                 }
                 failed => {
-                    let start = self.by_penalties(start, time, &mut solved, &mut counted);
-                    match (self.inner(start.as_ref().unwrap_or(&state), time, &mut solved, &mut counted), failed) {
-                        (Ok(found), _) => found,
-                        (Err(_), Some(Err(first))) => return Err(first),
-                        (Err(error), _) => return Err(error),
+                    let laid = match self.touches_nothing(start)? {
+                        true => self.laid_down(start, time, &mut solved, &mut counted),
+                        false => None,
+                    };
+                    if let Some(laid) = laid {
+                        laid?
+                    } else {
+                        let start = self.by_penalties(start, time, &mut solved, &mut counted);
+                        match (self.inner(start.as_ref().unwrap_or(&state), time, &mut solved, &mut counted), failed) {
+                            (Ok(found), _) => found,
+                            (Err(_), Some(Err(first))) => return Err(first),
+                            (Err(error), _) => return Err(error),
+                        }
                     }
                 }
             };
@@ -297,9 +305,10 @@ impl System {
                 return found;
             }
         }
-        // Where there is friction the way decides which state is reached: then only what no other way leads to.
-        let rubs = self.has_friction();
-        if !rubs && let Some(found) = self.laid_down(start, time, solved, report) {
+        // Where there is friction the way decides which state is reached.
+        if !self.has_friction()
+            && let Some(found) = self.laid_down(start, time, solved, report)
+        {
             return found;
         }
         if self
@@ -325,12 +334,7 @@ impl System {
             };
             return Err(IncrementError::NotConverged { history, worst: Some(format!("; {reason}")) });
         }
-        match self.by(Strategy::Round(failed), start, time, solved, report) {
-            Err(error) if rubs && is_curable(&error) => {
-                self.laid_down(start, time, solved, report).unwrap_or(Err(error))
-            }
-            found => found,
-        }
+        self.by(Strategy::Round(failed), start, time, solved, report)
     }
 
     /// Whether the state depends on the way to it, by bodies that are held: an increment without a state is to be cut, since

@@ -73,7 +73,8 @@ friction.coulomb = {{ mu = {mu} }}
         let lean = (side / 60.0).atan() - (radius / side.hypot(60.0)).asin();
         // The rope slips towards its free end.
         let ratio = (-mu * (PI - lean)).exp();
-        assert!((held / pull / ratio - 1.0).abs() < if mu == 0.0 { 1e-8 } else { 2e-2 }, "{play} {cells}: {held}");
+        // Where the rope leaves the drum the chords beside a node are not alike: an angle of 0.15 squared.
+        assert!((held / pull / ratio - 1.0).abs() < if mu == 0.0 { 5e-3 } else { 2e-2 }, "{play} {cells}: {held}");
         let force = number(&step["contacts"]["wrap"]["force"][2]);
         assert!((force / pull / (1.0 + ratio * lean.cos()) - 1.0).abs() < 1e-2, "{play} {cells}: {force}");
     }

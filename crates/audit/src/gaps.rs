@@ -155,9 +155,7 @@ impl Closed {
 
 /// The largest extent of places along the axes.
 fn extent_of(places: &[Point<3>]) -> f64 {
-    let Some(first) = places.first() else { return 0.0 };
-    let (low, high) = places.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
-    (high - low).max()
+    Aabb::around(places.iter().copied()).map_or(0.0, |bounds| bounds.size().max())
 }
 
 fn judge(

@@ -45,7 +45,7 @@ impl<'a> Planner<'a> {
                         .help(suggestion(name, &["m-N-Pa", "mm-N-MPa", "um-uN-MPa"]))
                 })?,
                 problem::UnitSystem::Base(b) => {
-                    Units::from_names(&b.length, &b.force, &b.time).map_err(|message| problem.error(key, message))?
+                    Units::from_names([&b.length, &b.force, &b.time, &b.temperature]).map_err(|message| problem.error(key, message))?
                 }
             }),
         };
@@ -210,7 +210,7 @@ impl<'a> Planner<'a> {
         self.problem.key(part)
     }
 
-    pub(crate) fn placed(&self, value: &Value, dimension: [i32; 3]) -> Result<LocatedExpression, CaseError> {
+    pub(crate) fn placed(&self, value: &Value, dimension: problem::units::Dimension) -> Result<LocatedExpression, CaseError> {
         let expression = self.reader.expression(value, dimension, coordinates(self.space))?;
         Ok(LocatedExpression { expression, key: self.key(value) })
     }

@@ -110,7 +110,7 @@ impl Reader<'_> {
                 .help("add  units = \"mm-N-MPa\"  (or m-N-Pa, um-uN-MPa) at the top, or leave the unit out")
         })?;
         let (factor, found) = units.factor(unit).map_err(wrong)?;
-        let expression = expression.scaled(factor);
+        let expression = expression.scaled(factor).shifted(units.shift(unit));
         let key = self.problem.key(value);
         let line = self.problem.source.line(&key);
         let echo =

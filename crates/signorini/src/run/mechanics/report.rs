@@ -5,7 +5,7 @@ use crate::output::system::{CurveShown, SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, ContactInfo, GRAVITY, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, MotionReport, Pose, Probe, Reason, RopeLimits, SectionReport,
+    BodyHeat, CellsReport, Component, ContactHeatReport, ContactReport, CurveReport, HeatReport, MotionReport, Pose, Probe, Reason, RopeLimits, SectionReport,
     StabilityReport, StepReport, TractionKind, UnitNames, vector,
 };
 use crate::run::contact_verdict::{contact_verdict, sticking};
@@ -14,7 +14,7 @@ use crate::run::record::Record;
 use signorini_contact::Status;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::{
-    AxisChoice, BodyState, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
+    AxisChoice, BodyState, Coarse, HeatResult, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
     rigid_body,
 };
 use signorini_paths::darboux::Darboux;
@@ -158,8 +158,36 @@ pub fn step_report(
         kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
         damping_dissipation: result.moved.as_ref().map(|moved| moved.damped),
         motion,
+        heat: result.heat.as_ref().map(|heat| heat_report(system, heat)),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
+    }
+}
+
+/// Temperatures and flows of heat.
+fn heat_report(system: &System, found: &HeatResult) -> HeatReport {
+    let Some(heat) = &system.heat else { return HeatReport::default() };
+    let body = |k: usize| {
+        let [min, max] = found.ranges[k]?;
+        let given = heat.known.contains_key(&k).then(|| found.known[k]);
+        Some((system.bodies[k].name().to_string(), BodyHeat { min, max, stored: found.stored[k], given }))
+    };
+    let contact = |k: usize| {
+        heat.contacts[k]?;
+        let (flow, contact) = (found.contacts[k], &system.contacts[k]);
+        let bodies = contact.bodies().map(|b| system.bodies[b].name().to_string());
+        let report =
+            ContactHeatReport { conducted: flow.conducted, friction: flow.friction, bodies, into: flow.into };
+        Some((contact.name().to_string(), report))
+    };
+    HeatReport {
+        passes: found.passes,
+        history: found.history.clone(),
+        balance: found.imbalance,
+        bodies: (0..system.bodies.len()).filter_map(body).collect(),
+        supports: heat.supports.iter().map(|s| s.name.clone()).zip(found.supports.iter().copied()).collect(),
+        loads: heat.loads.iter().map(|l| l.name.clone()).zip(found.loads.iter().copied()).collect(),
+        contacts: (0..system.contacts.len()).filter_map(contact).collect(),
     }
 }
 

@@ -54,8 +54,7 @@ const FORCES: [(&str, f64); 7] =
 const TIMES: [(&str, f64); 5] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
 const PRESSURES: [(&str, f64); 8] =
     [("Pa", 1.0), ("hPa", 1e2), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("mPa", 1e-3), ("bar", 1e5), ("mbar", 1e2)];
-const ENERGIES: [(&str, f64); 6] =
-    [("J", 1.0), ("kJ", 1e3), ("MJ", 1e6), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
+const ENERGIES: [(&str, f64); 6] = [("J", 1.0), ("kJ", 1e3), ("MJ", 1e6), ("mJ", 1e-3), ("uJ", 1e-6), ("nJ", 1e-9)];
 const POWERS: [(&str, f64); 5] = [("W", 1.0), ("kW", 1e3), ("MW", 1e6), ("mW", 1e-3), ("uW", 1e-6)];
 /// Scales of temperature with their zero, in kelvin.
 const TEMPERATURES: [(&str, f64); 2] = [("K", 0.0), ("degC", 273.15)];

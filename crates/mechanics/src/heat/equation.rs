@@ -56,8 +56,7 @@ impl System {
         }
         for site in at.contacts.iter().flatten() {
             let [(slave, of_slave), (master, of_master)] = &site.sides;
-            let terms: Vec<(u32, f64)> =
-                slave.iter().copied().chain(master.iter().map(|(f, a)| (*f, -a))).collect();
+            let terms: Vec<(u32, f64)> = slave.iter().copied().chain(master.iter().map(|(f, a)| (*f, -a))).collect();
             for (f, a) in &terms {
                 rhs[*f as usize] -= site.conductance * a * (of_slave - of_master);
             }
@@ -215,13 +214,7 @@ impl System {
     }
 
     /// The flows at a solution, and whether they balance in every body.
-    fn heat_flows(
-        &self,
-        heat: &Heat,
-        at: &Assembled,
-        t: &[f64],
-        blocks: &Blocks,
-    ) -> Result<HeatResult, HeatError> {
+    fn heat_flows(&self, heat: &Heat, at: &Assembled, t: &[f64], blocks: &Blocks) -> Result<HeatResult, HeatError> {
         let mut is_unity = vec![false; at.count];
         let mut body_of = vec![usize::MAX; at.count];
         for (k, first) in at.first.iter().enumerate() {
@@ -274,8 +267,7 @@ impl System {
                 let known = site.sides[0].1 - site.sides[1].1;
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     for (f, a) in &site.sides[side].0 {
-                        lacking[*f as usize] +=
-                            a * (sign * site.conductance * known - site.friction[side]);
+                        lacking[*f as usize] += a * (sign * site.conductance * known - site.friction[side]);
                     }
                 }
             }

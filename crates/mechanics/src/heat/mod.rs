@@ -91,7 +91,7 @@ pub trait ThermalBody: Sync {
     /// `∫ k ∇N_a·∇N_b`, cell by cell; nothing of bodies that do not conduct.
     fn conduction(&self) -> &[Block];
 
-    /// `∫ ρ c N_a N_b`, cell by cell; none where a density or specific heat is not known.
+    /// `∫ ρ c N_a N_b`, cell by cell, or an approximation with the same row sums; none where a density or specific heat is not known.
     fn capacity(&self) -> Option<&[Block]>;
 
     /// Adds `∫ r N_a` over the volume of a place.

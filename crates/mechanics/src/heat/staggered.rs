@@ -2,7 +2,7 @@
 //!
 //! Pass `k` solves for equilibrium at the temperatures `T_k`, then for the temperatures `G(T_k)` with the pressures and slips
 //! found. `T ← T + (G(T) - T)` is accelerated by the method of Anderson, since contacts whose conductance grows with the pressure
-//! make the plain iteration slow, or let it diverge (Barber, *Q. J. Mech. Appl. Math.* 34, 1981, on contacts that have no stable
+//! make the plain iteration slow, or let it diverge (Barber, Dundurs and Comninou, *J. Appl. Mech.* 47, 1980, on rods that have no stable
 //! state). Every pass starts from the same accepted state, so that slips and plastic strains count once.
 
 use super::{Equation, Heat, HeatError};
@@ -60,12 +60,7 @@ impl System {
     }
 
     /// Temperatures to begin with: those with the contacts of the last state, or where these do not tell them, the last ones.
-    fn first_temperatures(
-        &self,
-        heat: &Heat,
-        from: &SystemState,
-        time: f64,
-    ) -> Result<Vec<Vec<f64>>, IncrementError> {
+    fn first_temperatures(&self, heat: &Heat, from: &SystemState, time: f64) -> Result<Vec<Vec<f64>>, IncrementError> {
         let sites = (0..self.contacts.len()).map(|k| self.sites(k, from)).collect::<Result<Vec<_>, _>>()?;
         match self.solve_heat(heat, from, (from, &sites), time) {
             Ok((temperatures, _)) => Ok(temperatures),

@@ -316,6 +316,9 @@ pub struct Probe {
     pub pressure: Option<f64>,
     /// Equivalent stress (von Mises). Null for membranes.
     pub von_mises: Option<f64>,
+    /// Temperature; null for bodies without one.
+    #[serde(default)]
+    pub temperature: Option<f64>,
 }
 
 /// Data that may differ between two runs of one case.

@@ -121,9 +121,8 @@ impl<const D: usize> SolidBody<D> {
                 let weight = w * determinant(&jacobian) * self.bodies.measure(&x);
                 let inverse = inverse(&jacobian);
                 let basis = &table.basis[q];
-                let slope = |a: usize| {
-                    Point::<D>::from_fn(|j, _| (0..D).map(|k| basis.gradient[a][k] * inverse[(k, j)]).sum())
-                };
+                let slope =
+                    |a: usize| Point::<D>::from_fn(|j, _| (0..D).map(|k| basis.gradient[a][k] * inverse[(k, j)]).sum());
                 let slopes: Vec<Point<D>> = (0..n).map(slope).collect();
                 for (a, row) in values.chunks_mut(n).enumerate() {
                     for (b, value) in row.iter_mut().enumerate() {
@@ -135,6 +134,17 @@ impl<const D: usize> SolidBody<D> {
             (functions, values)
         };
         (0..body.mesh.cell_count()).into_par_iter().map(of).collect()
+    }
+}
+
+/// Sums each row on its diagonal. Functions of degree one then store heat node by node, and a short increment of time lets no
+/// temperature fall where heat comes in beside it.
+fn lump((functions, values): &mut Block) {
+    let n = functions.len();
+    for (a, row) in values.chunks_mut(n).enumerate() {
+        let sum = row.iter().sum();
+        row.fill(0.0);
+        row[a] = sum;
     }
 }
 
@@ -199,7 +209,13 @@ impl<const D: usize> ThermalBody for SolidBody<D> {
     fn capacity(&self) -> Option<&[Block]> {
         let own = self.heated.as_ref()?;
         let capacity = own.material.capacity?;
-        Some(own.capacity.get_or_init(|| self.cell_blocks(&|_, a, b, _, _| capacity * a * b)))
+        Some(own.capacity.get_or_init(|| {
+            let mut blocks = self.cell_blocks(&|_, a, b, _, _| capacity * a * b);
+            if self.body().degree == 1 {
+                blocks.iter_mut().for_each(lump);
+            }
+            blocks
+        }))
     }
 
     fn add_source(&self, on: Option<&str>, source: Field<'_>, out: &mut [f64]) -> Result<(), PlaceError> {
@@ -248,8 +264,12 @@ impl<const D: usize> ThermalBody for SolidBody<D> {
         let t = self.temperature_of(state);
         let vertices = self.vertex_functions();
         // Control points of splines lie beyond the field; values between vertices are left to the quadrature points.
-        let at_vertices =
-            t.iter().zip(&vertices).filter(|(_, is)| **is && !self.dofs().is_spline()).map(|(t, _)| *t).collect::<Vec<_>>();
+        let at_vertices = t
+            .iter()
+            .zip(&vertices)
+            .filter(|(_, is)| **is && !self.dofs().is_spline())
+            .map(|(t, _)| *t)
+            .collect::<Vec<_>>();
         let points = (0..self.mesh().cell_count()).flat_map(|cell| self.temperatures_at(cell, self.table(cell), t));
         let inner: Vec<f64> = if self.body().degree > 1 { points.collect() } else { Vec::new() };
         at_vertices.into_iter().chain(inner).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], t| [l.min(t), h.max(t)])

@@ -45,16 +45,17 @@ impl Planner<'_> {
             }
             (Some(_), Some(conductivity)) => {
                 return Err(problem
-                    .error(conductivity, format!("the temperature of `{name}` is given: its conductivity has no effect"))
+                    .error(
+                        conductivity,
+                        format!("the temperature of `{name}` is given: its conductivity has no effect"),
+                    )
                     .help("leave out either `temperature` or `conductivity`"));
             }
             _ => {}
         }
         let constant = |value: &Value, dimension| -> Result<Constant, CaseError> {
             let expression = self.reader.expression(value, dimension, self.places())?;
-            Ok(Arc::new(move |x: &Point<3>| {
-                expression.evaluate(&Scope { position: [x[0], x[1], x[2]], time: 0.0 })
-            }))
+            Ok(Arc::new(move |x: &Point<3>| expression.evaluate(&Scope { position: [x[0], x[1], x[2]], time: 0.0 })))
         };
         let conductivity = stated.conductivity.as_ref().map(|v| constant(v, CONDUCTIVITY)).transpose()?;
         if let (Some(value), Some(at)) = (&stated.conductivity, &conductivity) {
@@ -70,9 +71,10 @@ impl Planner<'_> {
         }
         let stress_free = match (&stated.stress_free_temperature, &stated.initial_temperature) {
             (Some(value), _) => self.reader.number(value, TEMPERATURE)?,
-            (None, Some(value)) => self.reader.number(value, TEMPERATURE).map_err(|error| {
-                error.help("without `stress_free_temperature` the initial temperature is a number")
-            })?,
+            (None, Some(value)) => self
+                .reader
+                .number(value, TEMPERATURE)
+                .map_err(|error| error.help("without `stress_free_temperature` the initial temperature is a number"))?,
             (None, None) if stated.expansion.is_none() => 0.0,
             (None, None) => {
                 return Err(problem
@@ -80,7 +82,8 @@ impl Planner<'_> {
                     .help("give `stress_free_temperature`, for example 20"));
             }
         };
-        let heat = stated.specific_heat.as_ref().map(|v| Ok((v, self.reader.positive(v, SPECIFIC_HEAT)?))).transpose()?;
+        let heat =
+            stated.specific_heat.as_ref().map(|v| Ok((v, self.reader.positive(v, SPECIFIC_HEAT)?))).transpose()?;
         let capacity = match (heat, self.density(key.density.as_ref())?) {
             (Some((_, heat)), Some(density)) => Some(heat * density),
             (Some((value, _)), None) => {
@@ -301,6 +304,13 @@ impl Planner<'_> {
         for contact in &system.contacts {
             let key = self.contact_key(contact.name());
             let Some((key, stated)) = key.and_then(|key| Some((key, key.heat.as_ref()?))) else {
+                let conducts = |b: usize| system.bodies[b].thermal().is_some_and(|own| own.conducts());
+                if contact.bodies().into_iter().all(conducts) {
+                    self.warn(format!(
+                        "contact `{name}` passes no heat, though both bodies conduct: give `contacts.{name}.heat`",
+                        name = contact.name()
+                    ));
+                }
                 out.push(None);
                 continue;
             };
@@ -349,7 +359,10 @@ impl Planner<'_> {
             };
             if let (Some(exponent), None) = (&stated.exponent, &stated.pressure) {
                 return Err(problem
-                    .error(exponent, "an exponent of the pressure without the pressure at which the conductance is stated")
+                    .error(
+                        exponent,
+                        "an exponent of the pressure without the pressure at which the conductance is stated",
+                    )
                     .help("give `pressure`"));
             }
             if let (Some(pressure), None) = (&stated.pressure, &stated.conductance) {
@@ -384,7 +397,9 @@ impl Planner<'_> {
     /// case goes with heat.
     fn check_heat(&self, system: &System, heat: &Heat) -> Result<(), CaseError> {
         let problem = self.problem;
-        if let Some(step) = problem.steps.iter().find(|step| matches!(step.control, Some(problem::Control::ArcLength(_)))) {
+        if let Some(step) =
+            problem.steps.iter().find(|step| matches!(step.control, Some(problem::Control::ArcLength(_))))
+        {
             return Err(problem
                 .error(step, "a path by arc length is followed at constant temperature")
                 .help("leave `thermal` out, or `control`"));

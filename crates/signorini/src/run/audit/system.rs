@@ -419,15 +419,7 @@ fn heat_work(system: &System, k: usize, before: Option<&SystemState>, now: &Syst
         Some([0.5 * (first + last), if body.is_linear() { 0.0 } else { 0.5 * (last - first).abs() }])
     });
     let still = Vector::<3>::zeros();
-    Some(Acting {
-        name: "heat".into(),
-        body: k,
-        force: still,
-        moment: Some(still),
-        work,
-        drives: false,
-        reacts: false,
-    })
+    Some(Acting { name: "heat".into(), body: k, force: still, moment: Some(still), work, drives: false, reacts: false })
 }
 
 /// A displacement that is the same all over a body; none of one that differs.

@@ -176,9 +176,13 @@ impl System {
     pub(crate) fn begin(&mut self, from: &SystemState, time: f64) -> Result<SystemState, IncrementError> {
         let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
-        for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
+        for (k, (body, state)) in self.bodies.iter().zip(&mut start.bodies).enumerate() {
             if body.is_inelastic() {
                 state.internal = body.renewed(state);
+            }
+            // What the law remembers is that of the temperature before.
+            if let (Some(thermal), Some(temperature)) = (body.thermal(), self.temperatures.get(k)) {
+                thermal.set_temperature(state, temperature);
             }
             body.prescribe(time, state);
         }

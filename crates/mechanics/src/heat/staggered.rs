@@ -3,13 +3,27 @@
 //! Pass `k` solves for equilibrium at the temperatures `T_k`, then for the temperatures `G(T_k)` with the pressures and slips
 //! found. `T ← T + (G(T) - T)` is accelerated by the method of Anderson, since contacts whose conductance grows with the pressure
 //! make the plain iteration slow, or let it diverge (Barber, Dundurs and Comninou, *J. Appl. Mech.* 47, 1980, on rods that have no stable
-//! state). Every pass starts from the same accepted state, so that slips and plastic strains count once.
+//! state). Where a contact opens and closes in turns, shares of the step from the best temperatures are taken. Every pass starts from the same accepted state, so that slips and plastic strains count once.
 
 use super::{Equation, Heat, HeatError};
 use crate::increment::IncrementResult;
 use crate::increment_error::IncrementError;
 use crate::system::{System, SystemState};
 use signorini_solve::Acceleration;
+
+/// Growth of the change of a pass with which the temperatures leapt to another state of the contacts.
+const LEAPS: f64 = 10.0;
+
+/// The temperatures with the least change by a pass so far.
+struct Best {
+    largest: f64,
+    temperatures: Vec<Vec<f64>>,
+    change: Vec<f64>,
+}
+
+fn move_by(temperatures: &mut [Vec<f64>], step: &[f64], share: f64) {
+    temperatures.iter_mut().flatten().zip(step).for_each(|(t, s)| *t += share * s);
+}
 
 impl System {
     /// Solves for equilibrium at a time as [`solve`](System::solve), with the temperatures that belong to it.
@@ -23,20 +37,19 @@ impl System {
         let kept = self.histories();
         let mut temperatures = self.first_temperatures(heat, from, time)?;
         let mut acceleration = Acceleration::default();
+        let mut share = 1.0;
+        let mut best: Option<Best> = None;
         let (mut history, mut iterations) = (Vec::new(), 0);
         for pass in 1..=heat.most_passes {
-            let mut start = from.clone();
-            for ((body, state), own) in self.bodies.iter().zip(&mut start.bodies).zip(&temperatures) {
-                if let Some(body) = body.thermal() {
-                    body.set_temperature(state, own);
-                }
-            }
             let before = iterations;
             let mut counted = |iteration: usize, residual: f64| {
                 iterations = before + iteration;
                 report(before + iteration, residual)
             };
-            let (state, mut result) = self.solve_at_temperature(&start, time, &mut counted)?;
+            self.temperatures.clone_from(&temperatures);
+            let found = self.solve_at_temperature(from, time, &mut counted);
+            self.temperatures.clear();
+            let (state, mut result) = found?;
             let found = self.solve_heat(heat, from, (&state, &result.sites), time);
             let (next, mut flows) = found.inspect_err(|_| self.put_back(&kept))?;
             let change: Vec<f64> =
@@ -53,8 +66,23 @@ impl System {
                 return Ok((state, result));
             }
             self.put_back(&kept);
-            let step = acceleration.next(change);
-            temperatures.iter_mut().flatten().zip(step).for_each(|(t, s)| *t += s);
+            if let Some(best) = best.as_ref().filter(|best| largest > LEAPS * best.largest) {
+                // A contact that opened or closed: the state lies between.
+                share *= 0.5;
+                temperatures.clone_from(&best.temperatures);
+                move_by(&mut temperatures, &best.change, share);
+                continue;
+            }
+            let before = temperatures.clone();
+            if share < 1.0 {
+                move_by(&mut temperatures, &change, share);
+                share = 0.5f64.min(2.0 * share);
+            } else {
+                move_by(&mut temperatures, &acceleration.next(change.clone()), 1.0);
+            }
+            if best.as_ref().is_none_or(|best| largest < best.largest) {
+                best = Some(Best { largest, temperatures: before, change });
+            }
         }
         Err(HeatError::NotConverged { passes: heat.most_passes, history }.into())
     }

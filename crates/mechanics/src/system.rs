@@ -44,7 +44,7 @@ pub struct System {
     /// Temperatures and heat; none where nothing is known of them.
     pub heat: Option<Heat>,
     /// The temperatures of bodies in the increment that is being solved; none where they stay as they are.
-    pub(crate) temperatures: Vec<Vec<f64>>,
+    pub temperatures: Vec<Vec<f64>>,
     /// How several processes solve it together; none where one does.
     pub division: Option<Division>,
 }

@@ -2,8 +2,9 @@
 //!
 //! Pass `k` solves for equilibrium at the temperatures `T_k`, then for the temperatures `G(T_k)` with the pressures and slips
 //! found. `T ← T + (G(T) - T)` is accelerated by the method of Anderson, since contacts whose conductance grows with the pressure
-//! make the plain iteration slow, or let it diverge (Barber, Dundurs and Comninou, *J. Appl. Mech.* 47, 1980, on rods that have no stable
-//! state). Where a contact opens and closes in turns, shares of the step from the best temperatures are taken. Every pass starts from the same accepted state, so that slips and plastic strains count once.
+//! make the plain iteration slow, or let it diverge (Barber, Dundurs and Comninou, *J. Appl. Mech.* 47, 1980, on rods that have
+//! no stable state). Where a contact opens and closes in turns, shares of the step from the best temperatures are taken. Every
+//! pass starts from the same accepted state, so that slips and plastic strains count once.
 
 use super::{Equation, Heat, HeatError};
 use crate::increment::IncrementResult;

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'cd857bb2cb6601ee'
+SCHEMA = 'c7ee8889b5f2538e'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -180,21 +180,24 @@ class BaseUnits(Noun):
 
     length: Unit of length, such as "mm".
     force: Unit of force, such as "N".
+    temperature: Scale of temperature, "K" or "degC"; "K" if left out.
     time: Unit of time; "s" if left out.
     """
 
     _key = None
-    _types = {'length': ('length', 'str'), 'force': ('force', 'str'), 'time': ('time', 'str')}
+    _types = {'length': ('length', 'str'), 'force': ('force', 'str'), 'temperature': ('temperature', 'str'), 'time': ('time', 'str')}
 
     def __init__(
         self,
         *,
         length: str,
         force: str,
+        temperature: Optional[str] = None,
         time: Optional[str] = None,
     ) -> None:
         self.length = length
         self.force = force
+        self.temperature = temperature
         self.time = time
 
 
@@ -577,6 +580,7 @@ class Contact(Noun):
     compliance: Rough surfaces of solids: the pressure as a function of the gap. If left out, bodies do not
         penetrate each other.
     friction: Friction law; frictionless if left out.
+    heat: Heat through the contact, and that of its friction; no heat if left out.
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     restitution: Coefficient of restitution of rigid bodies that strike, from 0 to 1; 0 if left out.
     self_contact: The rope, beam or solid that is in contact with itself.
@@ -589,7 +593,7 @@ class Contact(Noun):
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'method': ('method', '<Method>'), 'restitution': ('restitution', 'float'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'heat': ('heat', 'ContactHeat'), 'method': ('method', '<Method>'), 'restitution': ('restitution', 'float'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
 
     def __init__(
         self,
@@ -600,6 +604,7 @@ class Contact(Noun):
         cohesion: Optional[Cohesion | Mapping[str, Any]] = None,
         compliance: Optional[ExponentialCompliance | PowerCompliance | Mapping[str, Any] | str] = None,
         friction: Optional[CoulombFriction | TrescaFriction | ViscousFriction | RateAndStateFriction | Mapping[str, Any] | str] = None,
+        heat: Optional[ContactHeat | Mapping[str, Any]] = None,
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
         restitution: Optional[float] = None,
         self_contact: Optional[str] = None,
@@ -614,6 +619,7 @@ class Contact(Noun):
         self.cohesion = cohesion
         self.compliance = compliance
         self.friction = friction
+        self.heat = heat
         self.method = method
         self.restitution = restitution
         self.self_contact = self_contact
@@ -621,6 +627,55 @@ class Contact(Noun):
         self.tie_distance = tie_distance
         self.tied = tied
         self.wear = wear
+
+
+class ContactHeat(Noun):
+    """Heat through a contact.
+
+    conductance: Conductance where the surfaces touch: heat per time, area and jump of temperature; with
+        `pressure` that at this pressure. No heat passes if left out.
+    exponent: Exponent of the pressure, above 0; 0.95 if left out (Cooper, Mikic and Yovanovich).
+    friction_share: Part of the heat of friction that the first body of `between` takes, from 0 to 1; 0.5 if left
+        out.
+    pressure: Pressure at which the conductance is the one stated: at a pressure `p` it is `conductance *
+        (p/pressure)^exponent`. If left out, the conductance does not depend on the pressure.
+    """
+
+    _key = None
+    _types = {'conductance': ('conductance', 'Value'), 'exponent': ('exponent', 'float'), 'friction_share': ('friction_share', 'float'), 'pressure': ('pressure', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        conductance: Optional[Value] = None,
+        exponent: Optional[float] = None,
+        friction_share: Optional[float] = None,
+        pressure: Optional[Value] = None,
+    ) -> None:
+        self.conductance = conductance
+        self.exponent = exponent
+        self.friction_share = friction_share
+        self.pressure = pressure
+
+
+class Convection(Noun):
+    """Exchange of heat with a fluid, `coefficient * (ambient - temperature)` per area into the body.
+
+    coefficient: Film coefficient: heat per time, area and difference of temperature.
+    ambient: Temperature of the fluid.
+    """
+
+    _key = None
+    _types = {'coefficient': ('coefficient', 'Value'), 'ambient': ('ambient', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        coefficient: Value,
+        ambient: Value,
+    ) -> None:
+        self.coefficient = coefficient
+        self.ambient = ambient
 
 
 class CoulombFriction(Noun):
@@ -1150,6 +1205,30 @@ class GridMesh(Noun):
         self.refine = refine
 
 
+class Heat(Noun):
+    """How the temperature of solids is found.
+
+    equation: The equation of heat; `steady` if left out.
+    passes: Most passes of an increment; 50 if left out.
+    tolerance: Largest change of a temperature by a further pass between heat and mechanics that ends them,
+        relative to the range of temperatures; 1e-9 if left out.
+    """
+
+    _key = None
+    _types = {'equation': ('equation', 'str'), 'passes': ('passes', 'int'), 'tolerance': ('tolerance', 'float')}
+
+    def __init__(
+        self,
+        *,
+        equation: Optional[str] = None,
+        passes: Optional[int] = None,
+        tolerance: Optional[float] = None,
+    ) -> None:
+        self.equation = equation
+        self.passes = passes
+        self.tolerance = tolerance
+
+
 class Height(Noun):
     """The body below a height, an expression of x and y."""
 
@@ -1479,7 +1558,10 @@ class Load(Noun):
 
     on: Body or group of a body: `BODY` or `BODY:GROUP`.
     body_force: Force per volume along each axis; per length for a rope or beam.
+    convection: Exchange of heat of a solid with a fluid.
     force: Resultant force along each axis, distributed uniformly.
+    heat_flux: Heat per time and area into a solid.
+    heat_source: Heat per time and volume into a solid.
     moment: Resultant moment about each axis, on a beam, a free rigid body, or a solid of a system.
     nodal_force: Force along each axis on each node of the group, such as concentrated forces of an input deck.
     normal: For a membrane: force per area along +z.
@@ -1489,14 +1571,17 @@ class Load(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'force': ('force', '[Value]'), 'moment': ('moment', '[Value]'), 'nodal_force': ('nodal_force', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
+    _types = {'on': ('on', 'str'), 'body_force': ('body_force', '[Value]'), 'convection': ('convection', 'Convection'), 'force': ('force', '[Value]'), 'heat_flux': ('heat_flux', 'Value'), 'heat_source': ('heat_source', 'Value'), 'moment': ('moment', '[Value]'), 'nodal_force': ('nodal_force', '[Value]'), 'normal': ('normal', 'Value'), 'pressure': ('pressure', 'Value'), 'tension': ('tension', 'Value'), 'traction': ('traction', '[Value]')}
 
     def __init__(
         self,
         *,
         on: str,
         body_force: Optional[Sequence[Value] | Array] = None,
+        convection: Optional[Convection | Mapping[str, Any]] = None,
         force: Optional[Sequence[Value] | Array] = None,
+        heat_flux: Optional[Value] = None,
+        heat_source: Optional[Value] = None,
         moment: Optional[Sequence[Value] | Array] = None,
         nodal_force: Optional[Sequence[Value] | Array] = None,
         normal: Optional[Value] = None,
@@ -1506,7 +1591,10 @@ class Load(Noun):
     ) -> None:
         self.on = on
         self.body_force = body_force
+        self.convection = convection
         self.force = force
+        self.heat_flux = heat_flux
+        self.heat_source = heat_source
         self.moment = moment
         self.nodal_force = nodal_force
         self.normal = normal
@@ -2419,10 +2507,11 @@ class Rigid(Noun):
         plane, cone or paraboloid and from the centre of a round body; all other bodies are below.
     smooth: For triangle meshes: a smooth surface through the vertices replaces the flat triangles, for bodies
         that slide or roll on it; false if left out. Paths always use the smooth surface.
+    temperature: Temperature of the body, an expression of t, for contacts that conduct heat.
     """
 
     _key = 'rigid'
-    _types = {'shape': ('shape', '<Shape>'), 'motion': ('motion', '<Motion>'), 'side': ('side', 'str'), 'smooth': ('smooth', 'bool')}
+    _types = {'shape': ('shape', '<Shape>'), 'motion': ('motion', '<Motion>'), 'side': ('side', 'str'), 'smooth': ('smooth', 'bool'), 'temperature': ('temperature', 'Value')}
 
     def __init__(
         self,
@@ -2431,11 +2520,13 @@ class Rigid(Noun):
         motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
         side: Optional[str] = None,
         smooth: Optional[bool] = None,
+        temperature: Optional[Value] = None,
     ) -> None:
         self.shape = shape
         self.motion = motion
         self.side = side
         self.smooth = smooth
+        self.temperature = temperature
 
 
 class Rope(Noun):
@@ -2619,11 +2710,12 @@ class Solid(Noun):
     density: Mass per volume; no mass if left out.
     edges: Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.
     strain: Strain measure: `small` or `finite`; `small` if left out.
+    thermal: Thermal expansion, conduction and temperature; none if left out.
     velocity: Velocity along each axis at the start, as expressions of position; at rest if left out.
     """
 
     _key = 'solid'
-    _types = {'mesh': ('mesh', '<SolidMesh>'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'density': ('density', 'Value'), 'edges': ('edges', '{SolidEdge}'), 'strain': ('strain', 'str'), 'velocity': ('velocity', '[Value]')}
+    _types = {'mesh': ('mesh', '<SolidMesh>'), 'material': ('material', '<Material>'), 'degree': ('degree', 'int'), 'density': ('density', 'Value'), 'edges': ('edges', '{SolidEdge}'), 'strain': ('strain', 'str'), 'thermal': ('thermal', 'Thermal'), 'velocity': ('velocity', '[Value]')}
 
     def __init__(
         self,
@@ -2634,6 +2726,7 @@ class Solid(Noun):
         density: Optional[Value] = None,
         edges: Optional[Mapping[str, SolidEdge | Mapping[str, Any]]] = None,
         strain: Optional[str] = None,
+        thermal: Optional[Thermal | Mapping[str, Any]] = None,
         velocity: Optional[Sequence[Value] | Array] = None,
     ) -> None:
         self.mesh = mesh
@@ -2642,6 +2735,7 @@ class Solid(Noun):
         self.density = density
         self.edges = edges
         self.strain = strain
+        self.thermal = thermal
         self.velocity = velocity
 
 
@@ -2809,6 +2903,7 @@ class Support(Noun):
     rotation: Prescribed rotation vector in radians of a beam section or a free rigid body, with `"free"` for free
         components.
     spring: Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
+    temperature: Prescribed temperature of a solid that conducts heat.
     tied: All points share one unknown displacement: in the components that are not prescribed, or in those that
         are true of a list such as `[false, false, true]`.
     until: Time up to which the support holds, that time included. At later times the place is free. For ever if
@@ -2816,7 +2911,7 @@ class Support(Noun):
     """
 
     _key = None
-    _types = {'on': ('on', 'str'), 'axes': ('axes', '<SupportAxes>'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
+    _types = {'on': ('on', 'str'), 'axes': ('axes', '<SupportAxes>'), 'displacement': ('displacement', 'Value|[Value]'), 'from_': ('from', 'Value'), 'normal': ('normal', 'Value'), 'rotation': ('rotation', '[Value]'), 'spring': ('spring', '[Value]'), 'temperature': ('temperature', 'Value'), 'tied': ('tied', 'bool|[bool]'), 'until': ('until', 'Value')}
 
     def __init__(
         self,
@@ -2828,6 +2923,7 @@ class Support(Noun):
         normal: Optional[Value] = None,
         rotation: Optional[Sequence[Value] | Array] = None,
         spring: Optional[Sequence[Value] | Array] = None,
+        temperature: Optional[Value] = None,
         tied: Optional[bool | Sequence[bool] | Array] = None,
         until: Optional[Value] = None,
     ) -> None:
@@ -2838,6 +2934,7 @@ class Support(Noun):
         self.normal = normal
         self.rotation = rotation
         self.spring = spring
+        self.temperature = temperature
         self.tied = tied
         self.until = until
 
@@ -2860,6 +2957,42 @@ class Table(Noun):
     ) -> None:
         self.t = t
         self.value = value
+
+
+class Thermal(Noun):
+    """Temperature of a solid.
+
+    conductivity: Conductivity: heat per time, length and temperature, the same in all directions. A value or an
+        expression of position. Left out for a body whose `temperature` is given.
+    expansion: Thermal expansion: strain per temperature, the same in all directions. A value or an expression of
+        position; 0 if left out.
+    initial_temperature: Temperature at the start, a value or an expression of position; `stress_free_temperature`
+        if left out.
+    specific_heat: Heat per mass and temperature, for `equation = "transient"`.
+    stress_free_temperature: Temperature without thermal strain; `initial_temperature` if left out.
+    temperature: The temperature of the body where it is known, as an expression of position and time. Left out if
+        the equation of heat is solved for it.
+    """
+
+    _key = None
+    _types = {'conductivity': ('conductivity', 'Value'), 'expansion': ('expansion', 'Value'), 'initial_temperature': ('initial_temperature', 'Value'), 'specific_heat': ('specific_heat', 'Value'), 'stress_free_temperature': ('stress_free_temperature', 'Value'), 'temperature': ('temperature', 'Value')}
+
+    def __init__(
+        self,
+        *,
+        conductivity: Optional[Value] = None,
+        expansion: Optional[Value] = None,
+        initial_temperature: Optional[Value] = None,
+        specific_heat: Optional[Value] = None,
+        stress_free_temperature: Optional[Value] = None,
+        temperature: Optional[Value] = None,
+    ) -> None:
+        self.conductivity = conductivity
+        self.expansion = expansion
+        self.initial_temperature = initial_temperature
+        self.specific_heat = specific_heat
+        self.stress_free_temperature = stress_free_temperature
+        self.temperature = temperature
 
 
 class Time(Noun):
@@ -3151,6 +3284,7 @@ class ProblemKeys(Noun):
     functions: Named functions of one argument, `t`, for use in expressions.
     gravity: Acceleration of gravity along each axis, which acts on every body with a mass, also at rest;
         expressions of t are possible. None if left out.
+    heat: How temperatures are found. Steady conduction if left out.
     limits: Limits of the computation.
     loads: Loads, by names of your own.
     method: How the equations are solved.
@@ -3168,7 +3302,7 @@ class ProblemKeys(Noun):
     """
 
     _key = None
-    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'gravity': ('gravity', '[Value]'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'method': ('method', 'Solution'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
+    _types = {'bodies': ('bodies', '{<Body>}'), 'analysis': ('analysis', 'str'), 'constants': ('constants', '{Value}'), 'constraints': ('constraints', '{LinearConstraint}'), 'contacts': ('contacts', '{Contact}'), 'fit': ('fit', 'Fit'), 'frames': ('frames', 'int'), 'functions': ('functions', '{TimeFunction}'), 'gravity': ('gravity', '[Value]'), 'heat': ('heat', 'Heat'), 'limits': ('limits', 'Limits'), 'loads': ('loads', '{Load}'), 'method': ('method', 'Solution'), 'output': ('output', 'Output'), 'paths': ('paths', '{ShortestPath}'), 'ropes': ('ropes', '{RopeOnSurface}'), 'space': ('space', 'str'), 'stability': ('stability', 'str'), 'steps': ('steps', '[Step]'), 'supports': ('supports', '{Support}'), 'title': ('title', 'str'), 'units': ('units', 'str|BaseUnits'), 'view': ('view', 'View'), 'winding': ('winding', '{Winding}')}
 
     def __init__(
         self,
@@ -3182,6 +3316,7 @@ class ProblemKeys(Noun):
         frames: Optional[int] = None,
         functions: Optional[Mapping[str, TimeFunction | Mapping[str, Any]]] = None,
         gravity: Optional[Sequence[Value] | Array] = None,
+        heat: Optional[Heat | Mapping[str, Any]] = None,
         limits: Optional[Limits | Mapping[str, Any]] = None,
         loads: Optional[Mapping[str, Load | Mapping[str, Any]]] = None,
         method: Optional[Solution | Mapping[str, Any]] = None,
@@ -3206,6 +3341,7 @@ class ProblemKeys(Noun):
         self.frames = frames
         self.functions = functions
         self.gravity = gravity
+        self.heat = heat
         self.limits = limits
         self.loads = loads
         self.method = method
@@ -3222,4 +3358,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "BoxShape", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Petsc", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Solution", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "BoxShape", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "ContactHeat", "Convection", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Heat", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Petsc", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Solution", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Thermal", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

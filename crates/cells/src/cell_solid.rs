@@ -428,6 +428,8 @@ impl<const D: usize> Body for CellSolid<D> {
 
 impl<const D: usize> Kinematics for CellSolid<D> {}
 
+impl<const D: usize> signorini_mechanics::Thermal for CellSolid<D> {}
+
 impl<const D: usize> Inertial for CellSolid<D> {
     fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
         Ok(self.density.map(|density| self.mass_with(density)))

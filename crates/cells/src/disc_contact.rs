@@ -378,3 +378,5 @@ impl Iterated for DiscPairs {}
 impl Passing for DiscPairs {}
 
 impl Drawn for DiscPairs {}
+
+impl signorini_mechanics::Conducting for DiscPairs {}

@@ -155,6 +155,16 @@ impl Expression {
         Self { root: product.folded() }
     }
 
+    /// The expression plus a number: the zero of a scale.
+    #[must_use]
+    pub fn shifted(self, by: f64) -> Self {
+        if by == 0.0 {
+            return self;
+        }
+        let sum = Node::Binary(Binary::Add, Box::new(self.root), Box::new(Node::Number(by)));
+        Self { root: sum.folded() }
+    }
+
     /// Value, and derivatives where the scope holds jets.
     pub fn evaluate<R: Real>(&self, scope: &Scope<R>) -> R {
         self.root.evaluate(scope)

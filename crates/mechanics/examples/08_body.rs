@@ -118,6 +118,8 @@ impl Body for SprungPoint {
 
 impl Kinematics for SprungPoint {}
 
+impl signorini_mechanics::Thermal for SprungPoint {}
+
 impl Inertial for SprungPoint {}
 
 impl Elimination for SprungPoint {}

@@ -13,6 +13,7 @@ use crate::axes::Axes;
 pub use crate::constitution::{BoxOfMaterial, Constitution, Means, PointValues, Samples, UnstableMaterial};
 use crate::curve::Curve;
 pub use crate::dynamics::{Inertial, Mass};
+pub use crate::heat::Thermal;
 use crate::linear_solver::Subspaces;
 use crate::surface::Surface;
 use signorini_geometry::polyhedra::Placed;
@@ -196,7 +197,7 @@ pub struct BodyFields {
 /// A body of a system: unknowns, forces, and points that may touch. What only some bodies have is in the traits that it builds on;
 /// a body without it implements these as they are.
 pub trait Body:
-    Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Inertial + Send + Sync
+    Kinematics + Elimination + ContactSides + Slack + BoxOfMaterial + Constitution + Inertial + Thermal + Send + Sync
 {
     fn name(&self) -> &str;
 

@@ -61,6 +61,8 @@ pub struct PointValues {
     pub displacement: Vector<3>,
     /// Equivalent stress.
     pub von_mises: f64,
+    /// None of a body without one.
+    pub temperature: Option<f64>,
 }
 
 /// A point of which the material softens.

@@ -101,8 +101,8 @@ impl Problem<'_> {
 
     /// How far steps from a state are followed.
     pub(crate) fn search(&self, start: &SystemState) -> Newton {
-        let predicts =
-            self.system.bodies.iter().zip(&start.bodies).any(|(b, s)| !b.is_inelastic() && !s.internal.is_empty());
+        let predicts = (self.system.bodies.iter().zip(&start.bodies))
+            .any(|(b, s)| !b.is_inelastic() && b.thermal().is_none() && !s.internal.is_empty());
         // A step that turns material stretches it, and what is nearly incompressible takes that for a change of its volume: the step
         // after it corrects that.
         let is_stiff = self.system.bodies.iter().any(|b| b.is_nearly_incompressible());

@@ -6,6 +6,7 @@
 use crate::body::{BodyState, UnstableMaterial};
 use crate::dynamics::Moved;
 use crate::equilibrium::{Problem, Way};
+use crate::heat::HeatResult;
 use crate::increment_error::IncrementError;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
@@ -52,6 +53,8 @@ pub struct IncrementResult {
     pub stability: Option<Stability>,
     /// How bodies moved; none of equilibria.
     pub moved: Option<Moved>,
+    /// Temperatures and flows of heat; none where nothing is known of them.
+    pub heat: Option<HeatResult>,
 }
 
 /// Force relative to the largest with which no state is taken for one, whatever rounding may say.
@@ -131,6 +134,19 @@ impl System {
         time: f64,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let Some(heat) = self.heat.take() else { return self.solve_at_temperature(from, time, report) };
+        let found = self.solve_with_heat(&heat, from, time, report);
+        self.heat = Some(heat);
+        found
+    }
+
+    /// The same at the temperatures of the state.
+    pub(crate) fn solve_at_temperature(
+        &mut self,
+        from: &SystemState,
+        time: f64,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
         if self.is_rigid() {
             return self.solve_rigid(from, time, report);
         }
@@ -160,9 +176,13 @@ impl System {
     pub(crate) fn begin(&mut self, from: &SystemState, time: f64) -> Result<SystemState, IncrementError> {
         let mut start = SystemState { time, ..from.clone() };
         start.travel.iter_mut().for_each(|t| *t = 0.0);
-        for (body, state) in self.bodies.iter().zip(&mut start.bodies) {
+        for (k, (body, state)) in self.bodies.iter().zip(&mut start.bodies).enumerate() {
             if body.is_inelastic() {
                 state.internal = body.renewed(state);
+            }
+            // What the law remembers is that of the temperature before.
+            if let (Some(thermal), Some(temperature)) = (body.thermal(), self.temperatures.get(k)) {
+                thermal.set_temperature(state, temperature);
             }
             body.prescribe(time, state);
         }

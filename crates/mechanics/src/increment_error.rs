@@ -1,5 +1,6 @@
 //! Why an increment has no solution.
 
+use crate::heat::HeatError;
 use crate::system::AssemblyError;
 use signorini_solve::SolveError;
 
@@ -33,6 +34,8 @@ pub enum IncrementError {
         if *negative_eigenvalues == 1 { "" } else { "s" }
     )]
     Unstable { body: String, negative_eigenvalues: usize },
+    #[error(transparent)]
+    Heat(#[from] HeatError),
     #[error("interrupted")]
     Interrupted,
 }

@@ -15,6 +15,7 @@ pub use crate::outer::{NEAR_WANTED, OuterIteration, penalty_factor};
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact::Contact;
 use crate::contact_law::ContactLaw;
+pub use crate::heat::Conducting;
 use crate::inside::{self, Inside};
 use crate::part::Part;
 use crate::points::SlavePoint;
@@ -67,7 +68,7 @@ pub struct NotItsHistory {
 }
 
 /// Something between two bodies of a system, or within one.
-pub trait Interaction: Iterated + Passing + Drawn + Send + Sync {
+pub trait Interaction: Iterated + Passing + Drawn + Conducting + Send + Sync {
     fn name(&self) -> &str;
 
     /// The parts of bodies that may touch: that on which the reported forces act first.

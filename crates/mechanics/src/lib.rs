@@ -11,6 +11,7 @@
 //! - [`interaction`]: what acts between bodies, as the system sees it.
 //! - [`dynamics`]: masses and motion with inertia; `in_time`: an increment of it, by the equations of [`time_step`], with its
 //!   momenta (`moving`) and energy (`energy_in_time`).
+//! - [`heat`]: temperatures of bodies, heat through contacts, and both with mechanics in turn.
 //! - [`system`]: bodies, supports, loads (`placed`) and contacts, assembled; `linear_constraint`: equations between single nodes.
 //! - [`condensed`]: Newton's step with linear bodies factorised once; `eliminated`: with multipliers eliminated.
 //! - [`iterative`]: Newton's step of large systems by iterations.
@@ -43,6 +44,7 @@ mod energy_in_time;
 pub mod enforcement;
 mod equilibrium;
 mod free;
+pub mod heat;
 mod homotopy;
 mod in_time;
 pub mod increment;
@@ -94,6 +96,7 @@ pub use density::test_densely;
 pub use divided::DivisionError;
 pub use dynamics::{Dynamics, Inertial, Mass, Moved, Moving, SpinInertia};
 pub use enforcement::Enforcement;
+pub use heat::{Conducting, Heat, HeatError, HeatResult, Thermal, ThermalBody};
 pub use increment::IncrementResult;
 pub use increment_error::IncrementError;
 pub use inside::Inside;

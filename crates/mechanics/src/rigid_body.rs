@@ -377,6 +377,8 @@ impl Kinematics for RigidBody {
     }
 }
 
+impl crate::heat::Thermal for RigidBody {}
+
 impl Inertial for RigidBody {
     fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
         let Some(own) = &self.mass else { return Ok(None) };

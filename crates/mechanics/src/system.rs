@@ -6,6 +6,7 @@
 
 use crate::body::{Body, BodyError, BodyState, Constraint, Contribution, PlaceError};
 use crate::dynamics::{Dynamics, Mass};
+use crate::heat::Heat;
 use crate::interaction::{Assembler, Bodies, Interaction, InteractionUnknowns};
 use crate::linear_bodies::LinearBodies;
 use crate::linear_constraint::LinearConstraint;
@@ -40,6 +41,10 @@ pub struct System {
     pub masses: Vec<Option<Mass>>,
     /// The increment in time that is being solved.
     pub step: Option<TimeStep>,
+    /// Temperatures and heat; none where nothing is known of them.
+    pub heat: Option<Heat>,
+    /// The temperatures of bodies in the increment that is being solved; none where they stay as they are.
+    pub temperatures: Vec<Vec<f64>>,
     /// How several processes solve it together; none where one does.
     pub division: Option<Division>,
 }

@@ -1,7 +1,7 @@
 //! Deformable bodies: what they occupy, what they are computed on, and what they are made of.
 
 use super::material::Material;
-use super::{Beam, CellsBody, Components, List, MeshArrays, Named, NurbsMesh, Rigid, Rope, Value};
+use super::{Beam, CellsBody, Components, List, MeshArrays, Named, NurbsMesh, Rigid, Rope, Thermal, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +53,8 @@ pub struct Solid {
     pub strain: Option<String>,
     /// Mass per volume; no mass if left out.
     pub density: Option<Value>,
+    /// Thermal expansion, conduction and temperature; none if left out.
+    pub thermal: Option<Thermal>,
     /// Velocity along each axis at the start, as expressions of position; at rest if left out.
     pub velocity: Option<List<Value>>,
     /// Edges in space that are in contact as curves, by names of your own: `between = ["rope", "block:rim"]`.

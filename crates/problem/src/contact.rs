@@ -1,7 +1,7 @@
 //! Contacts: who may touch whom, by which method, with which law.
 
 use super::body::Domain;
-use super::{Components, List, Nothing, Value};
+use super::{Components, ContactHeat, List, Nothing, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,8 @@ pub struct Contact {
     pub restitution: Option<f64>,
     /// Wear of solids by Archard's law: the depth that is worn off per pressure and slip, one over a pressure.
     pub wear: Option<Value>,
+    /// Heat through the contact, and that of its friction; no heat if left out.
+    pub heat: Option<ContactHeat>,
 }
 
 /// Surfaces that hold each other with a traction which falls with the opening, until an energy is spent.

@@ -14,6 +14,7 @@ pub mod contact;
 pub mod curve;
 pub mod error;
 pub mod fit;
+mod heat;
 pub mod history;
 pub mod key_path;
 pub mod list;
@@ -40,6 +41,7 @@ pub use contact::*;
 pub use curve::*;
 pub use error::CaseError;
 pub use fit::{Fit, FitUnknown, Noise};
+pub use heat::{ContactHeat, Convection, Heat, HeatEquation, Thermal};
 pub use history::{ArcLength, AreaControl, Control, Dynamics, RayleighDamping, Step};
 pub use key_path::{KeyPath, Part};
 pub use list::{List, Named};
@@ -96,6 +98,8 @@ pub struct Problem {
     /// Acceleration of gravity along each axis, which acts on every body with a mass, also at rest; expressions of t are possible.
     /// None if left out.
     pub gravity: Option<List<Value>>,
+    /// How temperatures are found. Steady conduction if left out.
+    pub heat: Option<Heat>,
     /// Load steps. Without steps one state is computed at t = 0.
     #[serde(default)]
     pub steps: List<Step>,
@@ -145,6 +149,7 @@ impl Problem {
             contacts: Named::default(),
             constraints: Named::default(),
             gravity: None,
+            heat: None,
             steps: List::default(),
             stability: None,
             method: None,
@@ -232,10 +237,17 @@ pub struct BaseUnits {
     /// Unit of time; "s" if left out.
     #[serde(default = "second")]
     pub time: String,
+    /// Scale of temperature, "K" or "degC"; "K" if left out.
+    #[serde(default = "kelvin")]
+    pub temperature: String,
 }
 
 fn second() -> String {
     "s".into()
+}
+
+fn kelvin() -> String {
+    "K".into()
 }
 
 impl JsonSchema for UnitSystem {
@@ -337,6 +349,12 @@ pub struct Load {
     pub moment: Option<List<Value>>,
     /// Tensile force along the end of a rope or beam.
     pub tension: Option<Value>,
+    /// Heat per time and area into a solid.
+    pub heat_flux: Option<Value>,
+    /// Heat per time and volume into a solid.
+    pub heat_source: Option<Value>,
+    /// Exchange of heat of a solid with a fluid.
+    pub convection: Option<Convection>,
 }
 
 /// Limits of the computation. At the first limit the run stops after the current iteration and stores its results.

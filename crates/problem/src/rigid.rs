@@ -20,12 +20,14 @@ pub struct Rigid {
     pub smooth: Option<bool>,
     /// Motion of the body; at rest if left out.
     pub motion: Option<Motion>,
+    /// Temperature of the body, an expression of t, for contacts that conduct heat.
+    pub temperature: Option<Value>,
 }
 
 impl Rigid {
     /// A body at rest with contact on its outside.
     pub fn new(shape: Shape) -> Self {
-        Self { shape, side: None, smooth: None, motion: None }
+        Self { shape, side: None, smooth: None, motion: None, temperature: None }
     }
 }
 

@@ -23,6 +23,8 @@ pub struct Support {
     pub tied: Option<Tied>,
     /// Stiffness per area of an elastic foundation; for ropes, beams and rigid bodies force per displacement.
     pub spring: Option<List<Value>>,
+    /// Prescribed temperature of a solid that conducts heat.
+    pub temperature: Option<Value>,
     /// Time from which the support holds: at later times only. From the start if left out.
     pub from: Option<Value>,
     /// Time up to which the support holds, that time included. At later times the place is free. For ever if left out.

@@ -43,6 +43,7 @@ pub fn named(name: &str, units: Option<&UnitNames>, carries: TractionKind) -> Op
     let (label, unit) = match name {
         "von_mises" => ("Equivalent stress (von Mises)", unit(|u| &u.pressure)),
         "plastic_strain" => ("Equivalent plastic strain", String::new()),
+        "temperature" => ("Temperature", unit(|u| &u.temperature)),
         "contact_pressure" => match carries {
             TractionKind::Pressure => ("Contact pressure", carried()),
             TractionKind::LineLoad => ("Contact force per length", carried()),
@@ -81,9 +82,10 @@ pub fn sentence(key: &str) -> String {
 }
 
 /// Fields that a reader wants to see first, the most wanted first.
-pub const WANTED: [&str; 10] = [
+pub const WANTED: [&str; 11] = [
     "von_mises",
     "plastic_strain",
+    "temperature",
     "contact_pressure",
     "utilisation",
     "friction_utilisation",

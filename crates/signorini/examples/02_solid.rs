@@ -40,6 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         material: Material::LinearElastic(steel),
         strain: None,
         density: None,
+        thermal: None,
         velocity: None,
         edges: Named::default(),
     };

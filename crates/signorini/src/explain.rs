@@ -126,6 +126,7 @@ const WORDS: &[Word] = &[
     word("status", "result", "`done` if an analysis of paths has finished."),
     word("stress_xx_yy_zz_xy_yz_xz", "result", "Components of the stress, in this order."),
     word("plastic_strain", "result", "Equivalent plastic strain of elastic-plastic solids."),
+    word("temperature", "result", "Temperature of solids with `thermal`."),
     word("body", "result", "Number of the body that a cell belongs to."),
     word("x", "result", "Coordinate; the radius in axisymmetric cases."),
     word("y", "result", "Coordinate; in axisymmetric cases of solids the axial coordinate."),

@@ -15,7 +15,7 @@ macro_rules! example {
 }
 
 /// Cases with mechanics, simplest first.
-pub const GALLERY: [Example; 62] = [
+pub const GALLERY: [Example; 63] = [
     example!("string", "a string on a flat floor, compared with the exact solution"),
     example!("axisymmetric", "an axisymmetric membrane, compared with the exact solution"),
     example!("snap_in", "an adhesive membrane: snap-in, pull-off and hysteresis"),
@@ -74,6 +74,7 @@ pub const GALLERY: [Example; 62] = [
     example!("lattice", "a piece of a gyroid under a ball: finite cells of an expression"),
     example!("foam", "a foam from a CT image, crushed by a plate"),
     example!("die", "a NURBS die pressed into an elastic block"),
+    example!("brake", "a brake block drawn along a rail: heat of friction, stored and passed on"),
     example!("impact", "a bar strikes a wall: waves, and the energy that it came with"),
     example!("cradle", "Newton's cradle: rigid balls in motion, with impacts that follow each other"),
     example!("dice", "a die is thrown: impacts, friction, and rest on a face"),

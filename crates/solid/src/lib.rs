@@ -10,4 +10,4 @@ pub mod stiffness;
 
 pub use body::{Bodies, Body, BodySurface};
 pub use signorini_material::{Elastic, SolidMaterial, Space, StrainError, StressLaw, Volumetric, von_mises};
-pub use solid_body::{EdgeError, EdgeOf, SolidBody, SolidError};
+pub use solid_body::{Constant, EdgeError, EdgeOf, SolidBody, SolidError, ThermalMaterial};

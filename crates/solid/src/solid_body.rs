@@ -12,6 +12,7 @@ mod edge;
 mod edges;
 mod faces;
 mod fields;
+mod heat;
 mod history;
 mod hold;
 mod loads;
@@ -21,9 +22,11 @@ mod moments;
 mod projection;
 mod spatial;
 mod surface;
+mod thermal_strain;
 mod traction;
 
 pub use edge::{EdgeError, EdgeOf};
+pub use heat::{Constant, ThermalMaterial};
 
 use crate::body::Bodies;
 use crate::stiffness::{Table, stiffness};
@@ -82,6 +85,8 @@ pub struct SolidBody<const D: usize> {
     history: History,
     /// Mass per volume.
     density: Option<f64>,
+    /// Its temperature, where it has one.
+    heated: Option<heat::Heated>,
 }
 
 impl<const D: usize> SolidBody<D> {
@@ -151,6 +156,7 @@ impl<const D: usize> SolidBody<D> {
             size,
             history: History::default(),
             density: None,
+            heated: None,
         };
         out.kept = (0..out.mesh().cell_count()).collect();
         let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
@@ -280,7 +286,7 @@ impl<const D: usize> Body for SolidBody<D> {
     }
 
     fn start(&self) -> BodyState {
-        BodyState { configuration: vec![0.0; self.unknowns()], internal: self.history.start(self.law()) }
+        self.start_with_temperature(self.history.start(self.law()))
     }
 
     fn advance(&self, state: &BodyState, step: &[f64], share: f64) -> BodyState {
@@ -304,6 +310,13 @@ impl<const D: usize> Body for SolidBody<D> {
                 out.forces[*k as usize] += f;
                 energy += 0.5 * f * u[*k as usize];
             }
+        }
+        if let Some((forces, at_rest)) = self.thermal_forces(state) {
+            for ((out, f), u) in out.forces.iter_mut().zip(forces).zip(u) {
+                *out += f;
+                energy += f * u;
+            }
+            energy += at_rest;
         }
         if order == Order::Second {
             out.blocks.extend_from_slice(&self.stiffness);

@@ -147,7 +147,7 @@ impl<const D: usize> Constitution for CellSolid<D> {
         }
         let found = self.shown_at(self.fitted(state).as_ref(), cell, &within, &state.configuration);
         let displacement = spatial(&Point::<D>::from(found.displacement));
-        Some(PointValues { displacement, von_mises: von_mises(&found.stress) })
+        Some(PointValues { displacement, von_mises: von_mises(&found.stress), temperature: None })
     }
 
     fn law_name(&self) -> Option<String> {

@@ -171,7 +171,7 @@ impl Model {
         }
         self.deck.remark(
             card.line,
-            format!("*{} is left out: temperatures do not exist here, and none changes", card.keyword),
+            format!("*{} is left out: temperatures are not imported, and none changes", card.keyword),
         );
         Ok(())
     }

@@ -42,17 +42,21 @@ const WITHOUT_INFLUENCE: [&str; 38] = [
     "SPECIFICHEAT",
 ];
 
+/// What is said of heat.
+const HEAT: &str =
+    "heat is not imported; state `thermal` of bodies, supports with a temperature and `contacts.NAME.heat` in the case";
+
 /// Keywords that cannot be imported, and why.
 const REFUSED: [(&str, &str); 47] = [
-    ("TEMPERATURE", "thermal strains do not exist here"),
-    ("HEATTRANSFER", "heat transfer does not exist here"),
-    ("COUPLEDTEMPERATURE-DISPLACEMENT", "heat transfer does not exist here"),
-    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", "heat transfer does not exist here"),
-    ("CFLUX", "heat transfer does not exist here"),
-    ("DFLUX", "heat transfer does not exist here"),
-    ("FILM", "heat transfer does not exist here"),
-    ("RADIATE", "heat transfer does not exist here"),
-    ("GAPCONDUCTANCE", "heat transfer does not exist here"),
+    ("TEMPERATURE", "temperatures of nodes are not imported; state `thermal.temperature` of a body in the case"),
+    ("HEATTRANSFER", HEAT),
+    ("COUPLEDTEMPERATURE-DISPLACEMENT", HEAT),
+    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", HEAT),
+    ("CFLUX", HEAT),
+    ("DFLUX", HEAT),
+    ("FILM", HEAT),
+    ("RADIATE", HEAT),
+    ("GAPCONDUCTANCE", HEAT),
     ("DYNAMIC", "dynamics do not exist here"),
     ("MODALDYNAMIC", "dynamics do not exist here"),
     ("STEADYSTATEDYNAMICS", "dynamics do not exist here"),
@@ -90,7 +94,7 @@ const REFUSED: [(&str, &str); 47] = [
     ("CYCLICHARDENING", "cyclic hardening does not exist here"),
     ("CLEARANCE", "gaps other than those of the mesh do not exist here"),
     ("CONTACT", "general contact is not imported; use *CONTACT PAIR"),
-    ("DSFLUX", "heat transfer does not exist here"),
+    ("DSFLUX", HEAT),
 ];
 
 pub(super) fn is_without_influence(name: &str) -> bool {

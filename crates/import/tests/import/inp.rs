@@ -196,7 +196,7 @@ fn what_cannot_be_imported_is_named_with_its_line() {
             "",
             "*STEP\n*HEAT TRANSFER\n*END STEP",
             "*HEAT",
-            "*HEAT TRANSFER: cannot be imported: heat transfer does not exist here",
+            "*HEAT TRANSFER: cannot be imported: heat is not imported; state `thermal` of bodies, supports with a temperature and `contacts.NAME.heat` in the case",
         ),
         ("*NSET, NSET=N\n1, 99, Nothing", STEP, "Nothing", "*NSET: there is no set `Nothing`"),
         ("*BOUNDARY\n99, 1", STEP, "99, 1", "*BOUNDARY: there is no node 99"),

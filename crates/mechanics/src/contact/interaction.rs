@@ -6,6 +6,7 @@ use crate::body::Body;
 use crate::body::PlaceError;
 use crate::contact_law::{ContactLaw, PointHistory};
 use crate::enforcement::{SOFTER, WAVE};
+use crate::heat::{Conducting, Means, first_unknowns};
 use crate::inside::Inside;
 use crate::interaction::{
     Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing,
@@ -13,9 +14,10 @@ use crate::interaction::{
 };
 use crate::pair::Stuck;
 use crate::part::Part;
-use crate::points::{MaterialPoint, Sampling, Site};
+use crate::points::{Function, MaterialPoint, Sampling, Site};
 use crate::shown_surface::{ShownSurface, between_sites};
 use crate::site_result::SiteResult;
+use rayon::prelude::*;
 use signorini_geometry::{Point, Vector};
 
 impl<'a> Bodies<'a> {
@@ -250,4 +252,26 @@ fn memory(n: &[f64]) -> (([f64; 3], PointHistory), SiteMemory) {
     };
     let history = PointHistory { opened: n[16], offset: n[17], trial: [n[18], n[19], n[20]], state: n[21] };
     (([n[0], n[1], n[2]], history), memory)
+}
+
+impl Conducting for Contact {
+    fn means(&self, at: Bodies<'_>) -> Result<Option<Vec<Means>>, PlaceError> {
+        let sides = at.sides(self);
+        let dimensions = [sides.slave.0, sides.master.0].map(|body| body.thermal().map(|own| own.dimension()));
+        let master = self.met(&sides)?;
+        let of = |k: usize| {
+            let (placed, pair) = self.pair(k, &sides, (master.as_ref(), f64::INFINITY), |_| false);
+            let Some(Ok(touch)) = pair else { return Means::default() };
+            let on_master = master.at(&touch.pair.point);
+            let side = |dimension: Option<usize>, functions: &[Function]| {
+                dimension.map_or(Vec::new(), |d| first_unknowns(functions, d))
+            };
+            [side(dimensions[0], &placed.functions), side(dimensions[1], &on_master.functions)]
+        };
+        Ok(Some((0..self.sites().len()).into_par_iter().map(of).collect()))
+    }
+
+    fn conducts(&self) -> bool {
+        true
+    }
 }

@@ -12,6 +12,7 @@ use super::{Mortar, NodeMemory};
 use crate::body::{Body, PlaceError};
 use crate::contact_law::{ContactLaw, PointHistory};
 use crate::enforcement::WAVE;
+use crate::heat::{Conducting, Means};
 use crate::inside::Inside;
 use crate::interaction::{
     Assembler, Bodies, Drawn, Interaction, InteractionUnknowns, Iterated, NotItsHistory, OuterIteration, Passing,
@@ -28,6 +29,7 @@ use rayon::prelude::*;
 use signorini_contact::Status;
 use signorini_contact::law::Projected;
 use signorini_geometry::Vector;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A contact measured in a state.
@@ -408,5 +410,36 @@ impl Drawn for Mortar {
         let zone = zone_of(&self.nodes, slave.faces().0, points, &results);
         let shared = shared_of(&self.nodes, slave.faces().0, points, &results);
         Ok(self.nodes.faces().map(|faces| ShownSurface { shared, ..faces.with_zone(&zone, slave) }))
+    }
+}
+
+impl Conducting for Mortar {
+    /// Means weighted by the dual functions of the nodes.
+    fn means(&self, at: Bodies<'_>) -> Result<Option<Vec<Means>>, PlaceError> {
+        let own = [&self.slave, &self.master].map(|part| at.bodies[part.body].thermal().is_some());
+        let found = self.found(at, &self.law.multipliers(), false)?;
+        let slave = found.sides.slave.as_ref();
+        let mut sums = vec![[BTreeMap::<u32, f64>::new(), BTreeMap::new()]; self.whole.len()];
+        for (point, met) in found.measured.points() {
+            let mut on_slave = slave.point(point.face, &point.s).functions;
+            let mut on_master = match &found.sides.master {
+                Opposite::Surface(master) => master.point(met.on.patch as usize, &met.on.xi).functions,
+                Opposite::Rigid(_) => Vec::new(),
+            };
+            for (list, _) in [&mut on_slave, &mut on_master].into_iter().zip(own).filter(|(_, own)| !own) {
+                list.clear();
+            }
+            for (node, share) in &point.shares {
+                let weight = share / found.measures[*node as usize].weight;
+                for (sum, list) in sums[*node as usize].iter_mut().zip([&on_slave, &on_master]) {
+                    list.iter().for_each(|f| *sum.entry(f.unknown).or_default() += weight * f.value);
+                }
+            }
+        }
+        Ok(Some(sums.into_iter().map(|sides| sides.map(|side| side.into_iter().collect())).collect()))
+    }
+
+    fn conducts(&self) -> bool {
+        true
     }
 }

@@ -168,6 +168,8 @@ impl Body for Sheet {
 
 impl Kinematics for Sheet {}
 
+impl signorini_mechanics::Thermal for Sheet {}
+
 impl Inertial for Sheet {}
 
 impl Elimination for Sheet {}

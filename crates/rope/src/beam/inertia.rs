@@ -7,6 +7,8 @@ use signorini_mechanics::SpinInertia;
 use signorini_mechanics::body::{Body, BodyState, Inertial, Mass, PlaceError};
 use std::collections::BTreeMap;
 
+impl signorini_mechanics::Thermal for Beam {}
+
 impl Inertial for Beam {
     /// Rotations count at nodes and middles, by Simpson's rule.
     fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {

@@ -304,6 +304,8 @@ impl Kinematics for Cable {
     }
 }
 
+impl signorini_mechanics::Thermal for Cable {}
+
 impl Inertial for Cable {
     fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
         Ok(self.mass_per_length.map(|mass| mass::consistent(&self.line, mass, 6)))

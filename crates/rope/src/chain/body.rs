@@ -488,6 +488,8 @@ impl Kinematics for Chain {
     }
 }
 
+impl signorini_mechanics::Thermal for Chain {}
+
 impl Inertial for Chain {
     fn mass(&self, _: &[Option<&str>]) -> Result<Option<Mass>, PlaceError> {
         Ok(self.mass_per_length.map(|mass| mass::lumped(&self.line, mass)))

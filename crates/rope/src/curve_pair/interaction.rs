@@ -337,3 +337,5 @@ impl Passing for CurveContact {
 }
 
 impl Drawn for CurveContact {}
+
+impl signorini_mechanics::Conducting for CurveContact {}

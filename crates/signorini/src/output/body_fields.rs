@@ -10,7 +10,7 @@ use signorini_mechanics::BodyFields;
 use std::collections::HashMap;
 
 /// Names of arrays as files of fields have them.
-const NAMES: [&str; 9] = [
+const NAMES: [&str; 10] = [
     "tension",
     "axial_force",
     "shear_force",
@@ -20,6 +20,7 @@ const NAMES: [&str; 9] = [
     "element",
     "von_mises",
     "plastic_strain",
+    "temperature",
 ];
 /// What solids call their stress, and what files of fields do.
 pub(super) const STRESS: [&str; 2] = ["stress", "stress_xx_yy_zz_xy_yz_xz"];

@@ -35,6 +35,10 @@ impl Labels {
         self.with(what, |u| &u.pressure)
     }
 
+    pub fn temperature(&self) -> String {
+        self.with("T", |u| &u.temperature)
+    }
+
     /// What the axes are called.
     pub fn axes(&self, space: Space) -> [String; 3] {
         let first = if space == Space::Axisymmetric { "r" } else { "x" };

@@ -105,6 +105,8 @@ pub struct SystemShown {
     pub rigid: Vec<RigidShown>,
     /// In the plane, the intervals of surfaces that touch.
     pub zones: Vec<[Vector<3>; 2]>,
+    /// The array of solids that colours tell.
+    pub painted: &'static str,
 }
 
 impl SystemShown {
@@ -132,6 +134,7 @@ impl SystemShown {
             curves: Vec::new(),
             rigid: Vec::new(),
             zones: Vec::new(),
+            painted: "von_mises",
         };
         for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(state) {
             match kind {

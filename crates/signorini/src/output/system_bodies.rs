@@ -17,11 +17,17 @@ const THIN: f64 = 0.006;
 const VEIL: f64 = 0.75;
 const THIN_VEIL: f64 = 0.4;
 
-/// What the colours tell: the axial force of curves, from zero on; without curves, the equivalent stress of solids.
+/// What the colours tell: the axial force of curves, from zero on; without curves, the equivalent stress or the temperature of solids.
 pub fn scale_of(shown: &SystemShown) -> Scale {
     if shown.curves.is_empty() {
-        let all = shown.solids().flat_map(|b| b.array("von_mises").unwrap_or_default().to_vec());
-        return Scale::of(&all.collect::<Vec<f64>>());
+        let all = shown.solids().flat_map(|b| b.array(shown.painted).unwrap_or_default().to_vec());
+        let all: Vec<f64> = all.collect();
+        // Temperatures have no zero that matters.
+        let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        return match shown.painted {
+            "temperature" if low <= high => Scale::between(low, high, 0.0),
+            _ => Scale::of(&all),
+        };
     }
     let forces = shown.curves.iter().flat_map(|c| c.forces.iter().copied());
     let (low, high) = forces.fold((0.0f64, 0.0f64), |(low, high), f| (low.min(f), high.max(f)));
@@ -102,7 +108,7 @@ fn curves(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
 /// The solids, coloured by their stress where nothing else is coloured.
 pub fn solids(shown: &SystemShown, scale: &Scale) -> Vec<Body> {
     let paint =
-        |fields: &Fields| match fields.array("von_mises").filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
+        |fields: &Fields| match fields.array(shown.painted).filter(|_| shown.curves.is_empty() && !scale.is_empty()) {
             Some(values) => Paint::Field(values.iter().map(|v| scale.place(*v)).collect()),
             None => Paint::Plain(FREE),
         };

@@ -51,6 +51,7 @@ pub fn draw(
     }
     let view = view;
     let mut drawn = vec![("deformed".to_string(), scene(plan, &shown, &view, &titled(&view.what, shown.time))?)];
+    drawn.extend(temperature(plan, &shown, &view)?);
     drawn.extend(contact_zone(plan, &shown, &view)?);
     drawn.extend(system_cut::cut(plan, &shown, &view)?.map(|picture| ("cut".into(), picture)));
     drawn.extend(shown.curves.iter().flat_map(|curve| diagrams(curve, &labels, shown.time)));
@@ -72,6 +73,16 @@ pub fn draw(
         film::write(folder, film_of(plan, &frames, &view)?)?;
     }
     Ok(())
+}
+
+/// The temperature of solids that have one.
+fn temperature(plan: &MechanicsPlan, shown: &SystemShown, view: &View) -> Result<Option<NamedPicture>, OutputError> {
+    if !shown.curves.is_empty() || shown.solids().all(|body| body.array("temperature").is_none()) {
+        return Ok(None);
+    }
+    let heated = SystemShown { painted: "temperature", ..shown.clone() };
+    let own = View { note: view.note.clone(), forces: Forces::LeftOut, ..View::of(plan, &heated) };
+    Ok(Some(("temperature".into(), scene(plan, &heated, &own, &titled(&own.what, heated.time))?)))
 }
 
 /// What touches from near by, or from the side to which it looks.

@@ -68,6 +68,7 @@ impl View {
         let what = match (shown.is_of_solids(), scale.is_empty()) {
             (false, _) => plan.head.problem.name().to_string(),
             (true, true) => "Bodies at rest".into(),
+            (true, false) if shown.painted == "temperature" => "Temperature".into(),
             (true, false) => "Equivalent stress (von Mises)".into(),
         };
         let mut view = View {
@@ -220,7 +221,7 @@ pub fn bar(page: &mut Page, shown: &SystemShown, scale: &Scale, labels: &Labels)
     if shown.curves.iter().any(|c| !c.forces.is_empty()) {
         page.bar(scale, &labels.force("axial force"));
     } else if shown.is_of_solids() {
-        page.bar(scale, &labels.pressure("σ"));
+        page.bar(scale, &if shown.painted == "temperature" { labels.temperature() } else { labels.pressure("σ") });
     }
 }
 

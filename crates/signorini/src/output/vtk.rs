@@ -27,6 +27,7 @@ pub fn with_units(title: &str, data: DataSet, units: Option<&UnitNames>) -> Resu
         ("wear", &units.length),
         ("stress_xx_yy_zz_xy_yz_xz", &units.pressure),
         ("von_mises", &units.pressure),
+        ("temperature", &units.temperature),
         ("floor", &units.length),
         ("ceiling", &units.length),
         ("Points", &units.length),

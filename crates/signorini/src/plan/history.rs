@@ -153,7 +153,7 @@ impl Planner<'_> {
                 }
                 // On a line the area is a length; of a round membrane it is that of the disc.
                 let power = if self.space == problem::Space::Line { 1 } else { 2 };
-                let to = self.reader.number(&area.to, [power, 0, 0])?;
+                let to = self.reader.number(&area.to, [power, 0, 0, 0])?;
                 if !(to > 0.0 && to.is_finite()) || dimension == 0 {
                     return Err(self.problem.error(&area.to, format!("an area of {to} is not positive")));
                 }

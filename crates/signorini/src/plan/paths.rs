@@ -235,7 +235,11 @@ impl Planner<'_> {
         })
     }
 
-    fn placed_in_time(&self, value: &Value, dimension: [i32; 3]) -> Result<LocatedExpression, CaseError> {
+    fn placed_in_time(
+        &self,
+        value: &Value,
+        dimension: crate::problem::units::Dimension,
+    ) -> Result<LocatedExpression, CaseError> {
         Ok(LocatedExpression { expression: self.reader.expression(value, dimension, &["t"])?, key: self.key(value) })
     }
 

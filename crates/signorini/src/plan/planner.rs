@@ -44,9 +44,8 @@ impl<'a> Planner<'a> {
                         .error(key, format!("unknown system of units `{name}`"))
                         .help(suggestion(name, &["m-N-Pa", "mm-N-MPa", "um-uN-MPa"]))
                 })?,
-                problem::UnitSystem::Base(b) => {
-                    Units::from_names(&b.length, &b.force, &b.time).map_err(|message| problem.error(key, message))?
-                }
+                problem::UnitSystem::Base(b) => Units::from_names([&b.length, &b.force, &b.time, &b.temperature])
+                    .map_err(|message| problem.error(key, message))?,
             }),
         };
         let mut planner = Self {
@@ -210,7 +209,11 @@ impl<'a> Planner<'a> {
         self.problem.key(part)
     }
 
-    pub(crate) fn placed(&self, value: &Value, dimension: [i32; 3]) -> Result<LocatedExpression, CaseError> {
+    pub(crate) fn placed(
+        &self,
+        value: &Value,
+        dimension: problem::units::Dimension,
+    ) -> Result<LocatedExpression, CaseError> {
         let expression = self.reader.expression(value, dimension, coordinates(self.space))?;
         Ok(LocatedExpression { expression, key: self.key(value) })
     }

@@ -110,7 +110,7 @@ impl Reader<'_> {
                 .help("add  units = \"mm-N-MPa\"  (or m-N-Pa, um-uN-MPa) at the top, or leave the unit out")
         })?;
         let (factor, found) = units.factor(unit).map_err(wrong)?;
-        let expression = expression.scaled(factor);
+        let expression = expression.scaled(factor).shifted(units.shift(unit));
         let key = self.problem.key(value);
         let line = self.problem.source.line(&key);
         let echo =
@@ -207,5 +207,10 @@ pub fn split_unit(text: &str) -> (&str, Option<&str>) {
     let unit = rest.trim_start();
     // Without a space between them only what is a unit is one: `150um`, but not `2x`.
     let told = unit.len() < rest.len() || is_unit(unit);
-    if told && unit.starts_with(|c: char| c.is_alphabetic()) { (&text[..end], Some(unit)) } else { (text, None) }
+    let is_inverse = unit.starts_with("1/") && is_unit(unit);
+    if told && (is_inverse || unit.starts_with(|c: char| c.is_alphabetic())) {
+        (&text[..end], Some(unit))
+    } else {
+        (text, None)
+    }
 }

@@ -6,6 +6,7 @@
 
 mod contact;
 mod events;
+mod heat;
 mod paths;
 mod reason;
 mod table;
@@ -16,6 +17,7 @@ use crate::problem::Space;
 use crate::problem::units::{self, Units};
 pub use contact::{Component, ContactReport, ErrorEstimate, ForceBounds, OtherState, RopeLimits, TractionKind};
 pub use events::{ContactEvent, ContactEventKind, Event, EventKind, LocatedBy};
+pub use heat::{BodyHeat, ContactHeatReport, HeatReport};
 pub use paths::*;
 pub use reason::{Reason, Warning, WarningKind};
 use schemars::JsonSchema;
@@ -96,6 +98,12 @@ pub struct UnitNames {
     /// Unit of velocities.
     #[serde(default)]
     pub velocity: String,
+    /// Scale of temperatures.
+    #[serde(default)]
+    pub temperature: String,
+    /// Unit of flows of heat.
+    #[serde(default)]
+    pub heat_flow: String,
 }
 
 impl UnitNames {
@@ -112,6 +120,8 @@ impl UnitNames {
             energy: units.written(units::ENERGY),
             time: units.written(units::TIME),
             velocity: units.written(units::VELOCITY),
+            temperature: units.names[3].replace("deg", "°"),
+            heat_flow: units.written(units::POWER),
         }
     }
 }
@@ -200,6 +210,9 @@ pub struct StepReport {
     /// How bodies with a mass move, by their names. Empty in equilibrium.
     #[serde(default)]
     pub motion: BTreeMap<String, MotionReport>,
+    /// Temperatures and flows of heat. Null without bodies that have a temperature.
+    #[serde(default)]
+    pub heat: Option<HeatReport>,
 }
 
 /// Stability of an equilibrium: the second variation of the energy on the admissible motions.
@@ -303,6 +316,9 @@ pub struct Probe {
     pub pressure: Option<f64>,
     /// Equivalent stress (von Mises). Null for membranes.
     pub von_mises: Option<f64>,
+    /// Temperature; null for bodies without one.
+    #[serde(default)]
+    pub temperature: Option<f64>,
 }
 
 /// Data that may differ between two runs of one case.

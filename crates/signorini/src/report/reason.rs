@@ -38,6 +38,9 @@ pub enum Reason {
     UnstableState,
     /// Newton's method did not converge. Use smaller increments.
     Newton,
+    /// Temperatures and deformations do not agree, or nothing tells a temperature. The message names the body or the changes
+    /// of the temperature. Use smaller increments, or a support with a temperature.
+    Heat,
     /// The contact status alternates at the points named in the message. Use smaller increments, or finer cells at
     /// these points.
     Contact,

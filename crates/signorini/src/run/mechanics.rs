@@ -27,7 +27,7 @@ use parts::{Control, Told};
 use path::OnPath;
 use serde_json::{Value, json};
 use signorini_audit::Finding;
-use signorini_mechanics::{IncrementError, IncrementResult, Saved, SystemState};
+use signorini_mechanics::{HeatError, IncrementError, IncrementResult, Saved, SystemState};
 use signorini_solve::{Iteration, Progress};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -166,6 +166,21 @@ impl MechanicsModel {
                      states"
                 ),
             ),
+            IncrementError::Heat(HeatError::NotConverged { history: list, .. }) => (
+                Reason::Heat,
+                format!(
+                    "{error}; changes of the temperature, relative to the tolerance: {}; use more increments: a conductance \
+                     that grows with the pressure may leave no stable state",
+                    history(list)
+                ),
+            ),
+            IncrementError::Heat(HeatError::Floating { .. }) => (
+                Reason::Heat,
+                format!(
+                    "{error}; add a support with `temperature`, a load with `convection`, or heat.equation = \"transient\""
+                ),
+            ),
+            IncrementError::Heat(_) => (Reason::Heat, error.to_string()),
             IncrementError::Assembly(_) => (Reason::Input, error.to_string()),
         };
         Failure { reason, text, residuals }

@@ -125,6 +125,7 @@ fn at_rest(later: &StepReport) -> StepReport {
             in_contact: p.in_contact.map(|_| false),
             pressure: p.pressure.map(|_| 0.0),
             von_mises: p.von_mises.map(|_| 0.0),
+            temperature: None,
         })
     };
     let open = |c: &ContactReport| ContactReport {

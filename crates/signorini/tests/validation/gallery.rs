@@ -32,7 +32,7 @@ mod cases {
         active_set hertz hertz_sphere patch_test punch cylinder_on_block high_order_blocks torus ironing
         cattaneo_mindlin incline roller wedge press_fit peel jkr ring seal snap_fit brinell tubes groove capstan edge belt
         elastic_pulley sphere_parallel crossing twist clasp knot hertz_cells hertz_published plate_holes ball_cells rubber_tube two_balls foot pore pore_discs
-        lattice foam die impact cradle dice duels arch cards
+        lattice foam die brake impact cradle dice duels arch cards
         tippe_top
     }
 }

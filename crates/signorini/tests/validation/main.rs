@@ -19,6 +19,7 @@ mod floors;
 mod free_bodies;
 mod friction;
 mod gallery;
+mod heat;
 mod imported;
 mod invariance;
 mod materials;

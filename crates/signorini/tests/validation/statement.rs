@@ -112,6 +112,7 @@ fn meshes_are_arrays() {
             material: Material::LinearElastic(material),
             strain: None,
             density: None,
+            thermal: None,
             velocity: None,
             edges: Named::default(),
         };

@@ -28,7 +28,11 @@ impl<const D: usize> SolidBody<D> {
         // Where the map of a cell has a pole its stress is that beside it.
         let inner = self.body().mesh.shown_at(cell, &xi);
         let stress: Matrix3<f64> = if inner == xi { found.stress } else { at(&inner).stress };
-        Some(PointValues { displacement: found.displacement, von_mises: von_mises(&stress) })
+        let temperature = self
+            .heated
+            .as_ref()
+            .map(|_| self.temperatures_at(cell, &self.table_at(cell, &[xi]), self.temperature_of(state))[0]);
+        Some(PointValues { displacement: found.displacement, von_mises: von_mises(&stress), temperature })
     }
 
     /// Reference coordinates of a point in a cell; none where it is not in it.

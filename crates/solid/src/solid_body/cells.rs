@@ -33,12 +33,14 @@ pub(super) struct Gradients {
     pub weights: Vec<f64>,
     /// Constants and law at each point.
     pub laws: Vec<(Elastic, StressLaw)>,
+    /// What thermal strain leaves of a stretch of one at each point; nothing where there is none.
+    pub unstrained: Vec<f64>,
 }
 
 impl Gradients {
-    /// The deformation gradient at a point.
+    /// The deformation gradient at a point, less thermal strain.
     pub fn deformation(&self, q: usize, displacement: &DVector<f64>) -> Matrix3<f64> {
-        let mut f = Matrix3::identity();
+        let mut f = Matrix3::identity() * self.unstrained.get(q).copied().unwrap_or(1.0);
         let count = self.components.len();
         for (r, c) in self.components.iter().enumerate() {
             f[(c / 3, c % 3)] += displacement[q * count + r];
@@ -118,7 +120,7 @@ impl<const D: usize> SolidBody<D> {
                 }
             }
         }
-        Gradients { components, rows, weights, laws }
+        Gradients { components, rows, weights, laws, unstrained: Vec::new() }
     }
 
     /// The projection of the dilatation at the points of a cell to those of a table, where there is one.
@@ -150,7 +152,7 @@ impl<const D: usize> SolidBody<D> {
     fn cell(&self, cell: usize, state: &BodyState, order: Order) -> Result<CellForces, StrainError> {
         let unknowns = D * self.body().dofs.basis(cell).len();
         let own = self.own(cell, &state.configuration);
-        let at = self.gradients(cell, self.table(cell));
+        let at = self.gradients_in(cell, self.table(cell), state);
         let displacement = &at.rows * &own;
         let points = at.weights.len();
         let count = at.components.len();

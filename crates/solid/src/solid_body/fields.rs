@@ -48,8 +48,12 @@ impl<const D: usize> SolidBody<D> {
         let mut stress = Vec::new();
         let mut equivalent = Vec::new();
         let mut plastic = Vec::new();
+        let mut temperature = Vec::new();
         for (cell, points) in found.into_iter().enumerate() {
             let first = out.points.len() as u32;
+            if self.heated.is_some() {
+                temperature.extend(self.temperatures_at(cell, &of(cell).table, self.temperature_of(state)));
+            }
             out.cells.extend(of(cell).cells.iter().map(|c| c.iter().map(|k| first + k).collect()));
             for (q, Shown { x, displacement, stress: mut s, plastic_strain }) in points.into_iter().enumerate() {
                 let xi = of(cell).table.points[q].0;
@@ -68,6 +72,9 @@ impl<const D: usize> SolidBody<D> {
         out.point_data.push(("von_mises".into(), 1, equivalent));
         if self.law().has_history() {
             out.point_data.push(("plastic_strain".into(), 1, plastic));
+        }
+        if self.heated.is_some() {
+            out.point_data.push(("temperature".into(), 1, temperature));
         }
         out
     }
@@ -103,7 +110,7 @@ impl<const D: usize> SolidBody<D> {
     /// What the law gives at the points of a table: of laws with history those of quadrature.
     fn evaluated(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
         let own = self.own(cell, &state.configuration);
-        let at = self.gradients(cell, table);
+        let at = self.gradients_in(cell, table, state);
         let gradients = &at.rows * &own;
         let plane_stress = self.bodies.space == Space::PlaneStress;
         // The pressure as it acts in the cell: projected where the dilatation is.
@@ -114,7 +121,7 @@ impl<const D: usize> SolidBody<D> {
                 law.volumetric(elastic, law.dilatation(f).energy).map_or(f64::NAN, |u| u[1])
             }
         };
-        let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own) };
+        let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own, state) };
         (0..table.points.len())
             .map(|q| {
                 let f = at.deformation(q, &gradients);
@@ -139,8 +146,14 @@ impl<const D: usize> SolidBody<D> {
             .collect()
     }
 
-    fn projected_pressure(&self, cell: usize, to: &Table, own: &DVector<f64>) -> Option<DVector<f64>> {
-        let inner = self.gradients(cell, self.table(cell));
+    fn projected_pressure(
+        &self,
+        cell: usize,
+        to: &Table,
+        own: &DVector<f64>,
+        state: &BodyState,
+    ) -> Option<DVector<f64>> {
+        let inner = self.gradients_in(cell, self.table(cell), state);
         let project = self.projection(cell, &inner.weights, self.table(cell))?;
         let gradients = &inner.rows * own;
         let phi =

@@ -15,7 +15,7 @@ use signorini_mechanics::{BodyState, Constitution, PointValues, UnstableMaterial
 impl<const D: usize> SolidBody<D> {
     /// What the points of a cell of a law with history came to, with their weights; nothing of elastic laws.
     pub(super) fn plastic_points(&self, cell: usize, state: &BodyState) -> Vec<(f64, Plastic)> {
-        let at = self.gradients(cell, self.table(cell));
+        let at = self.gradients_in(cell, self.table(cell), state);
         let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
         let of = |(q, (elastic, law)): (usize, &(Elastic, StressLaw))| {
             let f: Matrix3<f64> = at.deformation(q, &displacement);
@@ -52,7 +52,8 @@ impl<const D: usize> Constitution for SolidBody<D> {
     }
 
     fn renewed(&self, state: &BodyState) -> Vec<f64> {
-        self.all_plastic_points(state).into_iter().flatten().flat_map(|(_, point)| point.history).collect()
+        let history = self.all_plastic_points(state).into_iter().flatten().flat_map(|(_, point)| point.history);
+        history.chain(self.thermal_of(state).iter().copied()).collect()
     }
 
     /// The first point of quadrature of an isotropic hyperelastic law that has lost its stability, cell by cell.
@@ -62,7 +63,7 @@ impl<const D: usize> Constitution for SolidBody<D> {
         }
         let of = |cell: usize| {
             let table = self.table(cell);
-            let at = self.gradients(cell, table);
+            let at = self.gradients_in(cell, table, state);
             let displacement: DVector<f64> = &at.rows * self.own(cell, &state.configuration);
             (0..at.laws.len()).find_map(|q| {
                 let (elastic, law) = &at.laws[q];

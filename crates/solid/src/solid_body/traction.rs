@@ -13,9 +13,11 @@ use signorini_material::{Elastic, Space};
 use signorini_mechanics::{BodyState, Direction, Function, Site};
 
 impl<const D: usize> SolidBody<D> {
-    /// `σ n` with the normal at rest, and what changes it; none at edges, and of laws that are not linear.
+    /// `σ n` with the normal at rest, and what changes it; none at edges, of laws that are not linear, and of a body that
+    /// expands.
     pub(super) fn traction_at(&self, state: &BodyState, site: &Site) -> Option<Direction> {
-        if !self.law().is_linear() || self.edge_at(site).is_some() {
+        let expands = self.heated.as_ref().is_some_and(|own| own.material.expansion.is_some());
+        if !self.law().is_linear() || expands || self.edge_at(site).is_some() {
             return None;
         }
         let rows = self.faces.point(site).traction.get_or_init(|| self.traction_rows(&self.faces, site));

@@ -436,3 +436,5 @@ impl Drawn for Tie {
         })
     }
 }
+
+impl crate::heat::Conducting for Tie {}

@@ -16,7 +16,7 @@ fn factors_and_dimensions() {
         assert_eq!(um.factor(&format!("{micro}N/{micro}m^2")), um.factor("uN/um^2"));
         assert_eq!(mm.factor(&format!("{micro}J/m^2")), mm.factor("uJ/m^2"));
         assert_eq!(Units::system(&format!("{micro}m-{micro}N-MPa")), Some(um));
-        assert_eq!(Units::from_names(&format!("{micro}m"), "uN", &format!("{micro}s")).unwrap().length, 1e-6);
+        assert_eq!(Units::from_names([&format!("{micro}m"), "uN", &format!("{micro}s"), "K"]).unwrap().length, 1e-6);
     }
     assert_eq!([PRESSURE, LENGTH, AREA, ENERGY].map(|d| mm.written(d)), ["MPa", "mm", "mm²", "mJ"]);
     assert_eq!([PRESSURE, LENGTH, FORCE, ENERGY].map(|d| um.written(d)), ["MPa", "µm", "µN", "µN·µm"]);

@@ -4,7 +4,7 @@ use super::Wrong;
 use crate::expression::{Expression, Scope};
 use crate::plan::placement::PlacementKeys;
 use crate::plan::planner::Planner;
-use crate::problem::units::{LENGTH, NONE, PRESSURE};
+use crate::problem::units::{Dimension, FORCE, LENGTH, NONE, PRESSURE};
 use crate::problem::{
     self, Beam, BeamModel, CaseError, Continuity, FormulaPath, List, Material, Path as Stated, PathFile, Rope, Value,
 };
@@ -21,7 +21,8 @@ use signorini_rope::mass::SectionMass;
 use signorini_rope::path::{Path, Sampled};
 use signorini_rope::section::{Section, Stiffness};
 
-const FORCE: [i32; 3] = [0, 1, 0];
+/// Bending stiffness: a force times an area.
+const STIFFNESS: Dimension = [2, 1, 0, 0];
 /// Elements of a rope and of a beam whose number is not stated.
 const ROPE_CELLS: usize = 50;
 const BEAM_CELLS: usize = 20;
@@ -87,7 +88,7 @@ impl Planner<'_> {
             }
         }
         let bending = match &key.bending_stiffness {
-            Some(value) => self.reader.number(value, [2, 1, 0])?,
+            Some(value) => self.reader.number(value, STIFFNESS)?,
             None => 0.0,
         };
         let cable = Cable::new(name, &sampled, stiffness, bending, Carries::TensionOnly, rest, radius)
@@ -164,13 +165,13 @@ impl Planner<'_> {
                     }
                 };
                 let axial = self.reader.positive(&stated.axial, FORCE)?;
-                let bending = two(&stated.bending, [2, 1, 0])?;
+                let bending = two(&stated.bending, STIFFNESS)?;
                 return Ok((
                     Stiffness {
                         axial,
                         shear: stated.shear.as_ref().map_or(Ok([axial; 2]), |v| two(v, FORCE))?,
                         torsion: match &stated.torsion {
-                            Some(v) => self.reader.positive(v, [2, 1, 0])?,
+                            Some(v) => self.reader.positive(v, STIFFNESS)?,
                             None => bending[0],
                         },
                         bending,

@@ -6,6 +6,7 @@ mod constraints;
 pub(super) mod contacts;
 mod curves;
 mod fields;
+mod heat;
 mod images;
 mod mortar;
 mod motion;
@@ -237,6 +238,7 @@ impl Planner<'_> {
         system.loads.extend(springs.into_iter().map(|(name, part, load)| PlacedLoad { name, part, load }));
         let (acting, contacts) = self.system_contacts(&numbers, &mut system, &kinds)?;
         system.contacts = acting;
+        system.heat = self.heat(&numbers, &system, &kinds, &wrong)?;
         self.check_restitution(&system)?;
         let SystemIncrements { times, arc_lengths, events, steps } = self.system_increments()?;
         let motion = self.motion(&numbers, &mut system, &steps, &wrong, &mut warnings)?;

@@ -2,7 +2,7 @@
 
 use super::{Kind, Numbers, Wrong};
 use crate::plan::planner::Planner;
-use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE, TIME};
+use crate::problem::units::{ENERGY, FORCE, FORCE_PER_LENGTH, LENGTH, NONE, PER_VOLUME, PRESSURE, TIME};
 use crate::problem::{Body, CaseError, List, Problem, ProblemPart, Space, Tied, Value, suggestion};
 use signorini_contact::ContactSurface;
 use signorini_geometry::{Point, Vector};
@@ -226,7 +226,7 @@ impl Planner<'_> {
             };
             let holds =
                 along.is_some() || uniform != [false; 3] || displacement.iter().chain(&rotation).any(Option::is_some);
-            if !holds && key.spring.is_none() {
+            if !holds && key.spring.is_none() && key.temperature.is_none() {
                 return Err(problem
                     .error(key, format!("the support `{name}` prescribes nothing"))
                     .help("add  displacement = [0, 0, 0]  or  normal = 0  or  tied = true  or  rotation = [0, 0, 0]  or  spring = […]"));
@@ -310,8 +310,8 @@ impl Planner<'_> {
     ) -> Result<(Vec<PlacedLoad>, Springs), CaseError> {
         let problem = self.problem;
         let plane = self.space != Space::ThreeD;
-        let force = if plane { FORCE_PER_LENGTH } else { [0, 1, 0] };
-        let moment = if plane { [0, 1, 0] } else { [1, 1, 0] };
+        let force = if plane { FORCE_PER_LENGTH } else { FORCE };
+        let moment = if plane { FORCE } else { ENERGY };
         let mut out = Vec::new();
         for (name, key) in &problem.loads {
             let part = self.part(&key.on, numbers)?;
@@ -320,6 +320,8 @@ impl Planner<'_> {
                     .error(normal, "`normal` is the load of a membrane")
                     .help("loads of solids are pressure (positive pushes inwards), traction, force and body_force"));
             }
+            let heat = [key.heat_flux.is_some(), key.heat_source.is_some(), key.convection.is_some()];
+            let of_heat = heat.iter().filter(|is| **is).count();
             let mut list = Vec::new();
             if let Some(v) = &key.pressure {
                 list.push(TimedLoad::Pressure(self.field(v, PRESSURE, wrong)?));
@@ -340,7 +342,7 @@ impl Planner<'_> {
             }
             if let Some(v) = &key.body_force {
                 let per =
-                    if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { FORCE_PER_LENGTH };
+                    if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { PER_VOLUME } else { FORCE_PER_LENGTH };
                 list.push(TimedLoad::BodyForce(self.vector_field(v, per, wrong)?));
             }
             if let Some(v) = &key.moment {
@@ -353,10 +355,17 @@ impl Planner<'_> {
                 let pull = if is_rope { self.pull(v, force, wrong)? } else { self.field(v, force, wrong)? };
                 list.push(TimedLoad::Tension(pull));
             }
+            if list.is_empty() && of_heat == 1 {
+                continue;
+            }
+            if of_heat > 0 {
+                let message = format!("the load `{name}` has {} values", list.len() + of_heat);
+                return Err(problem.error(key, message).help("state heat and forces as loads of their own"));
+            }
             let [load] = <[_; 1]>::try_from(list).map_err(|list: Vec<_>| {
                 problem
                     .error(key, format!("the load `{name}` has {} values", list.len()))
-                    .help("give exactly one of force, nodal_force, moment, tension, body_force (per volume, or per length of curves), traction, pressure")
+                    .help("give exactly one of force, nodal_force, moment, tension, body_force (per volume, or per length of curves), traction, pressure, heat_flux, heat_source, convection")
             })?;
             self.check_load(&part, &key.on, system)(&load)?;
             out.push(PlacedLoad { name: name.clone(), part, load });
@@ -365,7 +374,7 @@ impl Planner<'_> {
         for (name, key) in &problem.supports {
             let Some(spring) = &key.spring else { continue };
             let part = self.part(&key.on, numbers)?;
-            let per = if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { [-3, 1, 0] } else { [-1, 1, 0] };
+            let per = if matches!(kinds[part.body], Kind::Solid | Kind::Cells) { PER_VOLUME } else { FORCE_PER_LENGTH };
             let stiffness = if plane {
                 let [x, y] = self.reader.numbers::<2>(spring, per)?;
                 Vector::<3>::new(x, y, 0.0)

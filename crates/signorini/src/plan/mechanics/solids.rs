@@ -56,6 +56,7 @@ impl Planner<'_> {
             groups.values_mut().for_each(|group| *group = halved.group(group));
             mesh = halved.mesh;
         }
+        let thermal = self.thermal_material(name, key, &mesh)?;
         let mut on_axis = false;
         if space == Space::Axisymmetric {
             let size = mesh.nodes().iter().map(|x| x.norm()).fold(0.0, f64::max);
@@ -74,6 +75,10 @@ impl Planner<'_> {
         })?;
         let body = match self.density(key.density.as_ref())? {
             Some(density) => body.with_density(density),
+            None => body,
+        };
+        let body = match thermal {
+            Some(thermal) => body.with_heat(thermal),
             None => body,
         };
         let edges = self.edges(key)?;

@@ -37,6 +37,7 @@ impl Planner<'_> {
                 ("axes", key.axes.as_ref().map(|v| self.key(v))),
                 ("tied", key.tied.as_ref().map(|v| self.key(v))),
                 ("spring", key.spring.as_ref().map(|v| self.key(v))),
+                ("temperature", key.temperature.as_ref().map(|v| self.key(v))),
                 ("from", key.from.as_ref().map(|v| self.key(v))),
                 ("until", key.until.as_ref().map(|v| self.key(v))),
             ];

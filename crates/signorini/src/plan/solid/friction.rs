@@ -2,7 +2,7 @@
 
 use crate::expression::{Expression, Scope};
 use crate::plan::planner::Planner;
-use crate::problem::units::{LENGTH, NONE, PRESSURE, TIME};
+use crate::problem::units::{LENGTH, NONE, PRESSURE, TIME, VELOCITY};
 use crate::problem::{self, CaseError, Value};
 use signorini_contact::law::{
     Coulomb, Evolution, Law, LawError, RateAndState, RateAndStateKeys, Scheduled, Tresca, Viscous,
@@ -22,7 +22,7 @@ impl Planner<'_> {
             }
             problem::Friction::Viscous(key) => {
                 let mu = self.reader.number(&key.mu, NONE)?;
-                let velocity = self.reader.positive(&key.velocity, [1, 0, -1])?;
+                let velocity = self.reader.positive(&key.velocity, VELOCITY)?;
                 let law = Viscous::new(mu, velocity).map_err(|e| self.not_negative(&key.mu, e))?;
                 return Ok(Box::new(law));
             }
@@ -61,7 +61,7 @@ impl Planner<'_> {
             Coulomb::isotropic(found).map_err(|e| self.not_negative(value, e))?;
             Ok::<f64, CaseError>(found)
         });
-        let velocity = self.reader.positive(&key.velocity, [1, 0, -1])?;
+        let velocity = self.reader.positive(&key.velocity, VELOCITY)?;
         let distance = self.reader.positive(&key.distance, LENGTH)?;
         let keys = RateAndStateKeys {
             mu: mu?,

@@ -1,12 +1,12 @@
 //! Laws of interfaces between solids: friction, with compliance, cohesion, adhesion or wear.
 
 use crate::plan::planner::Planner;
-use crate::problem::units::{FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
+use crate::problem::units::{Dimension, FORCE_PER_LENGTH, LENGTH, NONE, PRESSURE};
 use crate::problem::{self, CaseError, SofteningKey, Value};
 use signorini_contact::law::{Cohesion, CohesionKeys, Compliance, Coulomb, Law, Rough, Softening, Worn};
 
 /// One over a pressure.
-const PER_PRESSURE: [i32; 3] = [-PRESSURE[0], -PRESSURE[1], -PRESSURE[2]];
+const PER_PRESSURE: Dimension = [-PRESSURE[0], -PRESSURE[1], -PRESSURE[2], 0];
 
 /// Why bodies of other kinds have no such law.
 const AT_POINTS: &str = "it is available for solids and finite cells that touch at points or by mortar";

@@ -377,6 +377,7 @@ fn forces(
             reacts: false,
         });
     }
+    out.extend((0..system.bodies.len()).filter_map(|k| heat_work(system, k, before.map(|b| &b.1), state)));
     for (k, load) in system.loads.iter().enumerate() {
         let Ok([force, moment]) = system.load_resultant(k, state, time) else { continue };
         let body = load.part.body;
@@ -400,6 +401,26 @@ fn forces(
         });
     }
     out
+}
+
+/// What changes of the temperature add to the energy that a body stores: by the mean of what they add before and after its
+/// displacement. None of bodies without a temperature.
+fn heat_work(system: &System, k: usize, before: Option<&SystemState>, now: &SystemState) -> Option<Acting> {
+    let body = &system.bodies[k];
+    let thermal = body.thermal()?;
+    let work = before.filter(|_| !body.is_inelastic()).and_then(|before| {
+        let states = [&before.bodies[k], &now.bodies[k]];
+        let energy = |displaced: usize, heated: usize| {
+            let mut state = states[displaced].clone();
+            thermal.set_temperature(&mut state, thermal.temperature(states[heated]));
+            body.internal(&state, Order::First, &mut Contribution::new(body.unknowns())).ok()
+        };
+        let [first, last] = [energy(0, 1)? - energy(0, 0)?, energy(1, 1)? - energy(1, 0)?];
+        // By how much the order of both matters: of linear laws it does not.
+        Some([0.5 * (first + last), if body.is_linear() { 0.0 } else { 0.5 * (last - first).abs() }])
+    });
+    let still = Vector::<3>::zeros();
+    Some(Acting { name: "heat".into(), body: k, force: still, moment: Some(still), work, drives: false, reacts: false })
 }
 
 /// A displacement that is the same all over a body; none of one that differs.

@@ -5,8 +5,8 @@ use crate::output::system::{CurveShown, SystemShown, frames};
 use crate::plan::mechanics::{AXIS_SUPPORT, ContactInfo, GRAVITY, Kind, MechanicsPlan};
 use crate::problem::Space;
 use crate::report::{
-    CellsReport, Component, ContactReport, CurveReport, MotionReport, Pose, Probe, Reason, RopeLimits, SectionReport,
-    StabilityReport, StepReport, TractionKind, UnitNames, vector,
+    BodyHeat, CellsReport, Component, ContactHeatReport, ContactReport, CurveReport, HeatReport, MotionReport, Pose,
+    Probe, Reason, RopeLimits, SectionReport, StabilityReport, StepReport, TractionKind, UnitNames, vector,
 };
 use crate::run::contact_verdict::{contact_verdict, sticking};
 use crate::run::mechanics::warnings::most_strained;
@@ -14,8 +14,8 @@ use crate::run::record::Record;
 use signorini_contact::Status;
 use signorini_geometry::{Point, Vector};
 use signorini_mechanics::{
-    AxisChoice, BodyState, Coarse, IncrementResult, Interaction, SiteResult, Solved, Stability, System, SystemState,
-    rigid_body,
+    AxisChoice, BodyState, Coarse, HeatResult, IncrementResult, Interaction, SiteResult, Solved, Stability, System,
+    SystemState, rigid_body,
 };
 use signorini_paths::darboux::Darboux;
 use signorini_paths::friction::Friction;
@@ -157,8 +157,35 @@ pub fn step_report(
         kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
         damping_dissipation: result.moved.as_ref().map(|moved| moved.damped),
         motion,
+        heat: result.heat.as_ref().map(|heat| heat_report(system, heat)),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
+    }
+}
+
+/// Temperatures and flows of heat.
+fn heat_report(system: &System, found: &HeatResult) -> HeatReport {
+    let Some(heat) = &system.heat else { return HeatReport::default() };
+    let body = |k: usize| {
+        let [min, max] = found.ranges[k]?;
+        let given = heat.known.contains_key(&k).then(|| found.known[k]);
+        Some((system.bodies[k].name().to_string(), BodyHeat { min, max, stored: found.stored[k], given }))
+    };
+    let contact = |k: usize| {
+        heat.contacts[k]?;
+        let (flow, contact) = (found.contacts[k], &system.contacts[k]);
+        let bodies = contact.bodies().map(|b| system.bodies[b].name().to_string());
+        let report = ContactHeatReport { conducted: flow.conducted, friction: flow.friction, bodies, into: flow.into };
+        Some((contact.name().to_string(), report))
+    };
+    HeatReport {
+        passes: found.passes,
+        history: found.history.clone(),
+        balance: found.imbalance,
+        bodies: (0..system.bodies.len()).filter_map(body).collect(),
+        supports: heat.supports.iter().map(|s| s.name.clone()).zip(found.supports.iter().copied()).collect(),
+        loads: heat.loads.iter().map(|l| l.name.clone()).zip(found.loads.iter().copied()).collect(),
+        contacts: (0..system.contacts.len()).filter_map(contact).collect(),
     }
 }
 
@@ -392,24 +419,25 @@ pub fn verdict(plan: &MechanicsPlan, record: &Record) -> String {
 
 /// What is known of a point of a body: where no body has values at any point, those of the nearest point that is shown.
 fn probed(system: &System, states: &[BodyState], shown: &SystemShown, x: &Point<3>) -> Option<Probe> {
-    let probe = |at: Point<3>, displacement: [f64; 3], von_mises: Option<f64>| Probe {
+    let probe = |at: Point<3>, displacement: [f64; 3], von_mises: Option<f64>, temperature: Option<f64>| Probe {
         at: vector(&at),
         displacement,
         in_contact: None,
         pressure: None,
         von_mises,
+        temperature,
     };
     if let Some(found) = system.bodies.iter().zip(states).find_map(|(body, state)| body.at(state, x)) {
-        return Some(probe(*x, vector(&found.displacement), Some(found.von_mises)));
+        return Some(probe(*x, vector(&found.displacement), Some(found.von_mises), found.temperature));
     }
     let points = shown.bodies.iter().flat_map(|b| {
         let u = b.array("displacement").unwrap_or_default();
-        let stress = b.array("von_mises");
+        let (stress, heat) = (b.array("von_mises"), b.array("temperature"));
         let at = move |(k, (x, u)): (usize, (&[f64; 3], &[f64]))| {
-            (Point::<3>::from(*x), [u[0], u[1], u[2]], stress.map(|s| s[k]))
+            (Point::<3>::from(*x), [u[0], u[1], u[2]], stress.map(|s| s[k]), heat.map(|t| t[k]))
         };
         b.points.iter().zip(u.chunks(3)).enumerate().map(at)
     });
     let nearest = points.min_by(|a, b| (a.0 - x).norm().total_cmp(&(b.0 - x).norm()))?;
-    Some(probe(nearest.0, nearest.1, nearest.2))
+    Some(probe(nearest.0, nearest.1, nearest.2, nearest.3))
 }

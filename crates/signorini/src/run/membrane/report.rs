@@ -108,6 +108,7 @@ pub fn step_report<const D: usize>(
             in_contact: Some(found.in_contact),
             pressure: Some(found.pressure),
             von_mises: None,
+            temperature: None,
         })
     };
     let supports = plan.supports.iter().zip(&report.support_forces);

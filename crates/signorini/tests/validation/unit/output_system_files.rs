@@ -15,7 +15,19 @@ fn a_body_as_an_image_has_its_boxes_and_units() {
     };
     let [length, area, force, pressure, energy, time] = ["mm", "mm²", "N", "kPa", "mJ", "s"].map(String::from);
     let (line_load, moment) = (String::new(), String::new());
-    let units = UnitNames { length, area, force, line_load, moment, pressure, energy, time, velocity: "m/s".into() };
+    let units = UnitNames {
+        length,
+        area,
+        force,
+        line_load,
+        moment,
+        pressure,
+        energy,
+        time,
+        velocity: "m/s".into(),
+        temperature: "K".into(),
+        heat_flow: "W".into(),
+    };
     let text = String::from_utf8(vti(&samples, Some(&units)).unwrap()).unwrap();
     for part in ["<ImageData ", "WholeExtent=\"0 3 0 2 0 0\"", "Origin=\"-1 0.5 0\"", "Spacing=\"0.25 0.5 1\""] {
         assert!(text.contains(part), "{part}: {text}");

@@ -3,7 +3,7 @@
 use super::*;
 use nalgebra::DMatrix;
 use signorini_fem::{CellShape, Side};
-use signorini_solid::Volumetric;
+use signorini_solid::{ThermalMaterial, Volumetric};
 
 const LAWS: [StressLaw; 4] = [
     StressLaw::LinearElastic,
@@ -47,12 +47,26 @@ fn state(u: &[f64]) -> BodyState {
     BodyState { configuration: u.to_vec(), internal: Vec::new() }
 }
 
+/// A temperature that varies from place to place, with large thermal strains.
+fn heated<const D: usize>(body: SolidBody<D>) -> SolidBody<D> {
+    body.with_heat(ThermalMaterial {
+        expansion: Some(Arc::new(|x| 0.03 * (1.0 + 0.5 * x[1]))),
+        stress_free: 0.5,
+        initial: Arc::new(|x| 2.0 + x[0] - 1.5 * x[0] * x[1]),
+        conductivity: None,
+        capacity: None,
+    })
+}
+
 fn check<const D: usize>(mesh: &Mesh<D>, degree: usize, space: Space, nu: f64) {
-    for law in LAWS {
+    for (law, is_heated) in LAWS.into_iter().flat_map(|law| [(law.clone(), false), (law, true)]) {
         let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: nu };
         let groups = mesh.groups().clone();
         let body =
             SolidBody::new("body", Arc::new(mesh.clone()), degree, (elastic, law.clone()), space, groups).unwrap();
+        let body = if is_heated { heated(body) } else { body };
+        let start = body.start();
+        let state = |u: &[f64]| BodyState { configuration: u.to_vec(), ..start.clone() };
         let n = body.unknowns();
         let seed = &mut 3u64;
         let u: Vec<f64> = (0..n).map(|_| 0.04 * noise(seed)).collect();

@@ -2,7 +2,7 @@
 //! all parts of them are known.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::state::{Body, Contact, Form, Placement, Setting, State};
+use crate::state::{Body, Contact, Form, Placement, Setting, State, Touch};
 use signorini_geometry::{Point, Vector};
 
 /// Part of the forces on a body that iterations may leave, and from which the state is none.
@@ -29,15 +29,17 @@ pub fn of_contact(setting: &Setting, state: &State, contact: usize, body: usize)
     }
     let closed = state.contacts.get(contact).into_iter().flatten().filter(|t| t.is_closed);
     match body {
-        b if b == first => closed.map(|t| (t.x, t.force())).collect(),
-        b if b == second => closed.map(|t| (t.foot, -t.force())).collect(),
+        b if b == first => closed.map(Touch::force).collect(),
+        b if b == second => closed.map(on_second).collect(),
         _ => Vec::new(),
     }
 }
 
-/// How far the points of a body are from its surface.
-fn radius_of(form: &Form) -> f64 {
-    if let Form::Curve(curve) = form { curve.radius } else { 0.0 }
+/// Where and with which force a contact acts on its second body.
+fn on_second(touch: &Touch) -> (Point<3>, Vector<3>) {
+    let (x, force) = touch.force();
+    // What acts on a centre line acts on the other body along the same line.
+    (if touch.on_centre_line.is_some() { x } else { touch.foot }, -force)
 }
 
 /// The curvature of the rigid one of two bodies.
@@ -87,8 +89,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
             continue;
         }
         for touch in state.contacts[number].iter().filter(|t| t.is_closed) {
-            let (x, f) =
-                if contact.bodies[0] == body { (touch.x, touch.force()) } else { (touch.foot, -touch.force()) };
+            let (x, f) = if contact.bodies[0] == body { touch.force() } else { on_second(touch) };
             let gap = (touch.x - touch.foot).norm();
             force += f;
             size += f.norm();
@@ -100,8 +101,7 @@ fn of_body(setting: &Setting, state: &State, body: usize) -> Option<Finding> {
             known &= contact.at_places;
             // What slides along a surface of some curvature at a distance from it goes another way than its foot there, and so
             // the friction on it is another one by as much.
-            let arm = gap + radius_of(&setting.bodies[contact.bodies[0]].form);
-            bent += arm * curvature(setting, state, contact, &touch.foot) * touch.friction.norm() * touch.weight;
+            bent += gap * curvature(setting, state, contact, &touch.foot) * touch.friction.norm() * touch.weight;
         }
     }
     if !size.is_finite() {

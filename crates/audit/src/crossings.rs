@@ -30,16 +30,13 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
             let places = [before, now].map(|s| s.bodies[body].points());
             let of = |piece: &[u32; 2]| {
                 let moving = places.map(|x| piece.map(|k| x[k as usize]));
-                let all = moving.iter().flatten();
-                let first = Aabb::new(moving[0][0], moving[0][0]);
-                (moving, all.fold(first, |b, p| Aabb::new(b.min.inf(p), b.max.sup(p))))
+                (moving, Aabb::around(moving.into_iter().flatten()).expect("a piece has ends"))
             };
             pieces.iter().map(of).collect()
         };
         let [ones, others] = [moving(a, &one.pieces), moving(b, &other.pieces)];
-        let apart = |p: &Aabb<3>, q: &Aabb<3>| (0..3).any(|k| p.min[k] > q.max[k] || q.min[k] > p.max[k]);
         let met: Vec<(Point<3>, i32)> = (ones.iter())
-            .flat_map(|p| others.iter().filter(|q| !apart(&p.1, &q.1)).flat_map(|q| meetings(&p.0, &q.0)))
+            .flat_map(|p| others.iter().filter(|q| !p.1.is_apart(&q.1)).flat_map(|q| meetings(&p.0, &q.0)))
             .collect();
         if met.iter().map(|m| m.1).sum::<i32>() != 0 {
             let [one, other] = [a, b].map(|k| &setting.bodies[k].name);

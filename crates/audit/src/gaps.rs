@@ -11,7 +11,7 @@ use crate::samples::{self, Sample, thickness, turns};
 use crate::state::{Contact, Curve, Form, Placement, Setting, Space, State, Touch};
 use rayon::prelude::*;
 use signorini_geometry::bvh::Bvh;
-use signorini_geometry::{Aabb, Point};
+use signorini_geometry::{Aabb, Point, Vector};
 
 /// Penetration as a share of a cell where forces act, from which it is told: by as much forces come out wrong about.
 const TOLD: f64 = 0.05;
@@ -86,6 +86,8 @@ struct Deepest {
     refused: f64,
     /// Whether forces act near by.
     carries: bool,
+    /// Whether the surface reaches deeper than it moved against the whole of its body, so that no contact force did push it out.
+    is_held: bool,
     bodies: [usize; 2],
 }
 
@@ -106,11 +108,13 @@ fn deepest(setting: &Setting, state: &State, contact: usize, bodies: [usize; 2])
     let wanted = setting.contacts[contact].wanted_penetration + given_way(setting, state, contact);
     let zone = extent_of(&closed.places);
     let largest = if let Form::Solid(solid) = form { solid.largest_cell() } else { 0.0 };
+    let shift = shift_of(form, &state.bodies[own]).filter(|_| rigid);
     let judge_one = |s: &Sample| {
         let except = (own == other).then_some((s.rest, APART * largest));
         let found = obstacle.find(&s.x, s.radius, except)?;
         let depth = s.radius - found.gap;
-        (depth > 0.0).then(|| judge(s, &found, (depth, wanted), (&closed, zone), bodies))
+        let moved = shift.map_or(f64::INFINITY, |shift| (s.x - s.rest - shift).norm());
+        (depth > 0.0).then(|| judge(s, &found, (depth, wanted, moved), (&closed, zone), bodies))
     };
     // In order, so that of equal ones it is always the same that is told.
     let judged: Vec<Deepest> = list.par_iter().filter_map(judge_one).collect();
@@ -155,15 +159,13 @@ impl Closed {
 
 /// The largest extent of places along the axes.
 fn extent_of(places: &[Point<3>]) -> f64 {
-    let Some(first) = places.first() else { return 0.0 };
-    let (low, high) = places.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
-    (high - low).max()
+    Aabb::around(places.iter().copied()).map_or(0.0, |bounds| bounds.size().max())
 }
 
 fn judge(
     s: &Sample,
     found: &Found,
-    (depth, wanted): (f64, f64),
+    (depth, wanted, moved): (f64, f64, f64),
     (closed, zone): (&Closed, f64),
     bodies: [usize; 2],
 ) -> Deepest {
@@ -177,12 +179,21 @@ fn judge(
     } else {
         (explained + NOWHERE * part, explained + NOWHERE * part)
     };
-    Deepest { x: s.x, depth, cell, told, refused, carries, bodies }
+    let is_held = carries && depth > told.max(explained + moved);
+    let refused = if is_held { told } else { refused };
+    Deepest { x: s.x, depth, cell, told, refused, carries, is_held, bodies }
+}
+
+/// The mean displacement of a solid; none of another body.
+fn shift_of(form: &Form, placement: &Placement) -> Option<Vector<3>> {
+    let (Form::Solid(solid), Placement::Points(now)) = (form, placement) else { return None };
+    let moved = now.iter().zip(&solid.rest).map(|(x, rest)| x - rest).sum::<Vector<3>>();
+    (!now.is_empty()).then(|| moved / now.len() as f64)
 }
 
 fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
     let [own, other] = deepest.bodies.map(|k| &setting.bodies[k].name);
-    let Deepest { depth, cell, told, refused, carries, x, .. } = deepest;
+    let Deepest { depth, cell, told, refused, carries, is_held, x, .. } = deepest;
     let (outcome, limit) = match (depth > refused, depth > told) {
         (true, _) => (Outcome::Refused, *refused),
         (_, true) => (Outcome::Doubt, *told),
@@ -192,6 +203,10 @@ fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {
     let what = format!("`{own}` penetrates `{other}` by {depth:.3e}, {share:.2e} of a cell");
     let (message, remedy) = match (outcome, carries) {
         (Outcome::Fine, _) => (what, None),
+        (_, true) if *is_held => (
+            format!("{what}, though contact forces act there: the surface does not give way"),
+            Some("support it elsewhere than where it is touched, or use smaller cells"),
+        ),
         (_, true) => {
             (format!("{what}, near contact forces"), Some("use smaller cells there, or another contact method"))
         }
@@ -244,7 +259,16 @@ fn between_curves(state: &State, number: usize, contact: &Contact, [c, d]: [&Cur
         let carries = closed.is_near(&x, radius + NEAR * lengths[0].max(lengths[1]) * c.parts);
         let (told, refused) = (explained + TOLD * radius, explained + REFUSED * radius);
         let refused = if carries { refused } else { told };
-        (depth > 0.0).then_some(Deepest { x, depth, cell: radius, told, refused, carries, bodies: contact.bodies })
+        (depth > 0.0).then_some(Deepest {
+            x,
+            depth,
+            cell: radius,
+            told,
+            refused,
+            carries,
+            is_held: false,
+            bodies: contact.bodies,
+        })
     });
     judged.max_by(by_excess)
 }

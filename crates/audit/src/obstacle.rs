@@ -83,9 +83,8 @@ pub struct SolidNow<'a> {
 }
 
 fn around(points: &[Point<3>], list: &[u32]) -> Aabb<3> {
-    let x = |k: &u32| points[*k as usize];
-    let first = list.first().map_or(Point::<3>::zeros(), x);
-    list.iter().fold(Aabb::new(first, first), |b, k| Aabb::new(b.min.inf(&x(k)), b.max.sup(&x(k))))
+    let nowhere = Aabb::new(Point::<3>::zeros(), Point::<3>::zeros());
+    Aabb::around(list.iter().map(|k| points[*k as usize])).unwrap_or(nowhere)
 }
 
 fn boxes(points: &[Point<3>], lists: &[Vec<u32>]) -> Bvh {

@@ -56,7 +56,7 @@ pub fn check(setting: &Setting, before: &State, now: &State) -> Vec<Finding> {
 /// The sum of the sizes of all forces, times the largest size of a body.
 fn forces(setting: &Setting, now: &State) -> f64 {
     let acting: f64 = now.forces.iter().map(|f| f.force.norm()).sum();
-    let touching: f64 = now.contacts.iter().flatten().filter(|t| t.is_closed).map(|t| t.force().norm()).sum();
+    let touching: f64 = now.contacts.iter().flatten().filter(|t| t.is_closed).map(|t| t.force().1.norm()).sum();
     (acting + touching) * setting.bodies.iter().map(|b| b.form.size()).fold(0.0, f64::max)
 }
 
@@ -137,9 +137,11 @@ fn of_increment(setting: &Setting, before: &State, now: &State) -> Option<Findin
         ),
         m if m < -limit => (Outcome::Refused, "energy appears", Some("use smaller increments")),
         m if m > limit && at_once => return None,
-        m if m > limit => {
-            (Outcome::Doubt, "energy is lost without friction", Some("use smaller increments where the state jumps"))
-        }
+        m if m > limit => (
+            Outcome::Doubt,
+            "energy is lost that nothing dissipates",
+            Some("the state jumps, as what falls or snaps does; otherwise use smaller increments"),
+        ),
         _ => (Outcome::Fine, "work, stored energy and dissipation are in balance", None),
     };
     let message = format!(

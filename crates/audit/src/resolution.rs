@@ -68,7 +68,7 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
     let area: f64 = closed.iter().map(|t| t.area).sum();
     let width = width(setting.space, &closed);
     let cells = width / cell;
-    let force = |list: &[Touch]| list.iter().filter(|t| t.is_closed).map(Touch::force).sum::<Vector<3>>().norm();
+    let force = |list: &[Touch]| list.iter().filter(|t| t.is_closed).map(|t| t.force().1).sum::<Vector<3>>().norm();
     let earlier: f64 = before.iter().filter(|t| t.is_closed).map(|t| t.area).sum();
     let [f, g] = [force(before), force(now)];
     let stays = earlier > 0.0 && (area - earlier).abs() <= AREA * area && (g - f).abs() > FORCE * f.max(g);

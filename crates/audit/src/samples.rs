@@ -3,7 +3,7 @@
 use crate::nearest::{centre, extent};
 use crate::state::{Curve, Form, Placement, Rigid, Solid};
 use rayon::prelude::*;
-use signorini_geometry::Point;
+use signorini_geometry::{Aabb, Point};
 
 /// A point of a body, or a ball about it.
 #[derive(Clone, Copy, Debug)]
@@ -125,9 +125,8 @@ fn of_rigid(rigid: &Rigid, placement: &Placement, balls: bool) -> Vec<Sample> {
 
 /// The smallest extent of a solid along the axes.
 pub fn thickness(points: &[Point<3>], directions: &[usize]) -> f64 {
-    let first = points.first().copied().unwrap_or_default();
-    let (low, high) = points.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-    directions.iter().map(|i| high[*i] - low[*i]).fold(f64::INFINITY, f64::min)
+    let size = Aabb::around(points.iter().copied()).map_or(Point::<3>::zeros(), |bounds| bounds.size());
+    directions.iter().map(|i| size[*i]).fold(f64::INFINITY, f64::min)
 }
 
 /// The middle of all points of a body.

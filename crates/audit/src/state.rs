@@ -5,7 +5,7 @@
 use crate::boundary::Boundary;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::GapJet;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Aabb, Point, Vector};
 use std::sync::Arc;
 
 /// What does not change with time.
@@ -68,9 +68,7 @@ impl Form {
             Form::Curve(curve) => &curve.rest,
             Form::Rigid(rigid) => return rigid.size,
         };
-        let Some(first) = points.first() else { return 0.0 };
-        let (low, high) = points.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
-        (high - low).max()
+        Aabb::around(points.iter().copied()).map_or(0.0, |bounds| bounds.size().max())
     }
 }
 
@@ -262,6 +260,8 @@ pub struct Touch {
     pub pressure: f64,
     /// Friction on the first body, per weight.
     pub friction: Vector<3>,
+    /// Where friction acts on a section that does not turn by itself, and how large it is there.
+    pub on_centre_line: Option<(Point<3>, Vector<3>)>,
     /// Slip of the first body along the other in the increment.
     pub slip: Vector<3>,
     /// Depth that was worn off since the start. The foot is that on the worn surface.
@@ -274,9 +274,10 @@ impl Touch {
         (self.x - self.foot).dot(&self.normal)
     }
 
-    /// The force on the first body.
-    pub fn force(&self) -> Vector<3> {
-        (self.normal * self.pressure + self.friction) * self.weight
+    /// Where the force acts, and the force on the first body.
+    pub fn force(&self) -> (Point<3>, Vector<3>) {
+        let (x, friction) = self.on_centre_line.unwrap_or((self.x, self.friction));
+        (x, (self.normal * self.pressure + friction) * self.weight)
     }
 }
 

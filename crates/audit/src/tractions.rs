@@ -60,7 +60,7 @@ fn of_contact(contact: &Contact, touches: &[Touch], nothing: f64, refused: f64) 
         return out;
     }
     let name = &contact.name;
-    if touches.iter().any(|t| !t.force().iter().all(|v| v.is_finite())) {
+    if touches.iter().any(|t| !t.force().1.iter().all(|v| v.is_finite())) {
         out.push(
             Finding::new(
                 Check::Tractions,

@@ -178,15 +178,29 @@ impl<const D: usize> CellSolid<D> {
         let point = &self.points[number];
         let mut t = Tabulation::default();
         self.body.functions_at(point.cell, &point.x, &mut t);
-        let (moved, mut gradient) = self.displacement(point.cell, &t, u);
-        // A cell with little material does not control its own gradient.
-        let stress_cell = self.body.cells()[point.cell].stress_cell;
-        if stress_cell != point.cell {
-            self.body.functions_at(stress_cell, &point.x, &mut t);
-            gradient = self.displacement(stress_cell, &t, u).1;
-        }
+        self.moved(number, &mut t, u)
+    }
+
+    /// The same from the functions there, which those of the cell that gives the stress may replace.
+    fn moved(&self, number: usize, t: &mut Tabulation<D>, u: &[f64]) -> (Point<3>, Vector<3>) {
+        let point = &self.points[number];
+        let (moved, _, gradient) = self.moved_and_carried(number, t, u);
         let normal = normal_now(&point.normal, &gradient).try_normalize(0.0).unwrap_or_default();
         (spatial(&(point.x + moved)), normal)
+    }
+
+    /// The displacement of a point of the boundary; displacement and gradient there of the cell that gives the stress: a cell
+    /// with little material does not control its own gradient.
+    fn moved_and_carried(&self, number: usize, t: &mut Tabulation<D>, u: &[f64]) -> (Vector<D>, Vector<D>, Matrix<D>) {
+        let point = &self.points[number];
+        let stress_cell = self.body.cells()[point.cell].stress_cell;
+        let (moved, gradient) = self.displacement(point.cell, t, u);
+        if stress_cell == point.cell {
+            return (moved, moved, gradient);
+        }
+        self.body.functions_at(stress_cell, &point.x, t);
+        let (carried, gradient) = self.displacement(stress_cell, t, u);
+        (moved, carried, gradient)
     }
 
     /// Displacement and its gradient at a point of a cell.
@@ -364,7 +378,7 @@ impl<const D: usize> Body for CellSolid<D> {
                 }
             }
         }
-        let (x, normal) = self.point_now(number, &state.configuration);
+        let (x, normal) = self.moved(number, &mut t, &state.configuration);
         let outward = (normal != Vector::<3>::zeros()).then_some(normal);
         SlavePoint { x, outward, functions, frame: Matrix::<3>::identity(), ..SlavePoint::default() }
     }
@@ -502,6 +516,7 @@ impl<const D: usize> ContactSides for CellSolid<D> {
         self.body.functions_at(cell, &point.x, &mut t);
         let u = &state.configuration;
         let mut out = Direction::default();
+        out.functions.reserve_exact(D * t.value.len());
         for (k, value) in self.body.tractions(cell, point, &t).iter().enumerate() {
             let function = self.body.cells()[cell].functions[k / D];
             if let Some(unknown) = self.unknown(function, k % D) {
@@ -511,6 +526,16 @@ impl<const D: usize> ContactSides for CellSolid<D> {
             }
         }
         Some(out)
+    }
+
+    fn position_and_traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<(Point<3>, f64)> {
+        let number = site.patch as usize;
+        let point = &self.points[number];
+        let mut t = Tabulation::default();
+        self.body.functions_at(point.cell, &point.x, &mut t);
+        let (moved, carried, gradient) = self.moved_and_carried(number, &mut t, &state.configuration);
+        let traction = self.body.hooke_traction(point, &carried, &gradient)?;
+        Some((spatial(&(point.x + moved)), traction.norm()))
     }
 
     /// `E p²/h`.

@@ -85,7 +85,7 @@ impl<const D: usize> CellBody<D> {
     /// That nothing lies in a place, with the box of the cells with material.
     pub(crate) fn empty_place(&self, place: &str) -> CellsError {
         let all = (0..self.cells().len()).map(|c| self.bounds_of(c));
-        let whole = all.copied().reduce(|a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
+        let whole = all.copied().reduce(|a, b| a.joined(&b));
         let corner = |x: &Point<D>| x.iter().copied().collect();
         let whole = whole.unwrap_or(*self.tree.bounds());
         CellsError::EmptyPlace { place: place.to_string(), low: corner(&whole.min), high: corner(&whole.max) }

@@ -18,7 +18,7 @@ use crate::space::Tabulation;
 use crate::tensor_integrals::TensorFunctions;
 use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Matrix, Point, Vector};
 use signorini_material::{Space, StressLaw};
 use std::sync::Arc;
 
@@ -227,6 +227,18 @@ impl<const D: usize> CellBody<D> {
             }
         }
         out
+    }
+
+    /// The traction `σ n` of isotropic Hooke's law at a site, by a displacement and its gradient; none of another law.
+    pub fn hooke_traction(&self, site: &Site<D>, displacement: &Vector<D>, gradient: &Matrix<D>) -> Option<Vector<D>> {
+        if !self.law().is_linear() || !self.is_hooke_at_rest() {
+            return None;
+        }
+        let (lambda, mu) = self.material.elastic().lame(self.material.space);
+        let hoop = if self.material.space == Space::Axisymmetric { displacement[0] / site.x[0] } else { 0.0 };
+        let normal = &site.normal;
+        let traction = normal * (lambda * (gradient.trace() + hoop)) + (gradient + gradient.transpose()) * normal * mu;
+        Some(traction * self.modulus_factor(&site.x))
     }
 
     /// The Cauchy stress at a point of a cell of an elastic law, from the gradient of the displacement there, in space.

@@ -2,7 +2,7 @@
 
 use super::mesh::{Mesh, Side};
 use super::reference::CellShape;
-use signorini_geometry::Point;
+use signorini_geometry::{Aabb, Point};
 
 /// The positions of the cell boundaries along each direction.
 pub type Axes<const D: usize> = [Vec<f64>; D];
@@ -107,9 +107,8 @@ fn joined<const D: usize>(
 ) -> (Vec<Point<D>>, Vec<u32>, [bool; D]) {
     let strides: [usize; D] = std::array::from_fn(|k| counts[..k].iter().product());
     let place = |node: usize, k: usize| node / strides[k] % counts[k];
-    let Some(first) = nodes.first() else { return (nodes, Vec::new(), [false; D]) };
-    let (low, high) = nodes.iter().fold((*first, *first), |(l, h), x| (l.inf(x), h.sup(x)));
-    let near = SAME * (high - low).norm();
+    let Some(bounds) = Aabb::around(nodes.iter().copied()) else { return (nodes, Vec::new(), [false; D]) };
+    let near = SAME * bounds.size().norm();
     // A side that shrinks to a point lies on everything.
     let closed: [bool; D] = std::array::from_fn(|k| {
         let mut pairs = (0..nodes.len()).filter(|n| place(*n, k) == 0).map(|n| [n, n + (counts[k] - 1) * strides[k]]);

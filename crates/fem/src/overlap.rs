@@ -91,9 +91,8 @@ impl<const D: usize> Mesh<D> {
 
     fn box_of(&self, cell: usize) -> Aabb<3> {
         let nodes = self.cell_nodes(cell).iter().map(|&n| in_space(&self.nodes()[n as usize]));
-        let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Point::<3>::repeat);
-        let [min, max] = nodes.fold(nowhere, |[min, max], x| [min.inf(&x), max.sup(&x)]);
-        Aabb::new(min, max).scaled(if self.map(cell).order() > 1 { BULGE } else { 1.0 })
+        let bounds = Aabb::around(nodes).expect("cells have nodes");
+        bounds.scaled(if self.map(cell).order() > 1 { BULGE } else { 1.0 })
     }
 
     /// Whether a point lies in a cell, by Newton's method from its middle.

@@ -15,6 +15,21 @@ impl<const D: usize> Aabb<D> {
         Self { min, max }
     }
 
+    /// The smallest box around points; none without points.
+    pub fn around(points: impl IntoIterator<Item = Point<D>>) -> Option<Self> {
+        points.into_iter().map(|x| Self::new(x, x)).reduce(|a, b| a.joined(&b))
+    }
+
+    /// The smallest box around two.
+    pub fn joined(&self, other: &Self) -> Self {
+        Self::new(self.min.inf(&other.min), self.max.sup(&other.max))
+    }
+
+    /// Whether two boxes have no point in common.
+    pub fn is_apart(&self, other: &Self) -> bool {
+        (0..D).any(|k| self.min[k] > other.max[k] || other.min[k] > self.max[k])
+    }
+
     pub fn center(&self) -> Point<D> {
         0.5 * (self.min + self.max)
     }

@@ -38,10 +38,6 @@ fn empty() -> Aabb<3> {
     Aabb::new(Point::<3>::repeat(f64::INFINITY), Point::<3>::repeat(f64::NEG_INFINITY))
 }
 
-fn joined(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
-    Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max))
-}
-
 /// Squared distance from a point to a box.
 #[inline]
 fn squared_to(b: &Aabb<3>, p: &Point<3>) -> f64 {
@@ -117,7 +113,7 @@ impl Bvh {
         let of_leaf = |order: &[u32], c: Child| {
             order[c.first as usize..(c.first + c.count) as usize]
                 .iter()
-                .fold(empty(), |all, &k| joined(&all, &boxes[k as usize]))
+                .fold(empty(), |all, &k| all.joined(&boxes[k as usize]))
         };
         // Children come after their parents.
         for k in (0..self.nodes.len()).rev() {
@@ -127,12 +123,12 @@ impl Bvh {
                     of_leaf(&self.order, child)
                 } else {
                     let [p, q] = self.nodes[child.first as usize].boxes;
-                    joined(&p, &q)
+                    p.joined(&q)
                 };
             }
         }
         self.root_box = match self.nodes.first() {
-            Some(node) => joined(&node.boxes[0], &node.boxes[1]),
+            Some(node) => node.boxes[0].joined(&node.boxes[1]),
             None => of_leaf(&self.order, self.root),
         };
     }
@@ -260,7 +256,7 @@ fn build(
 ) -> Aabb<3> {
     let n = order.len();
     if n <= LEAF {
-        return order.iter().fold(empty(), |all, &k| joined(&all, &boxes[k as usize]));
+        return order.iter().fold(empty(), |all, &k| all.joined(&boxes[k as usize]));
     }
     let extent = order.iter().fold(empty(), |all, &k| {
         let c = centers[k as usize];
@@ -281,7 +277,7 @@ fn build(
     let (p, q) =
         if n >= PARALLEL { rayon::join(&mut build_left, &mut build_right) } else { (build_left(), build_right()) };
     node.boxes = [p, q];
-    joined(&p, &q)
+    p.joined(&q)
 }
 
 #[cfg(test)]

@@ -378,6 +378,12 @@ pub trait ContactSides {
         None
     }
 
+    /// Where a site is now, and the size of its [`traction`](ContactSides::traction), without what changes them: enough to see
+    /// that a site of zero radius is far from what it may touch. None where that costs as much as [`placed`](Body::placed).
+    fn position_and_traction(&self, _state: &BodyState, _site: &Site) -> Option<(Point<3>, f64)> {
+        None
+    }
+
     /// The pressure per gap that makes Nitsche's method at a site stable; none where [`traction`](ContactSides::traction) is none.
     fn stabilisation(&self, _site: &Site) -> Option<f64> {
         None

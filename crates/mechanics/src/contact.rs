@@ -38,7 +38,7 @@ use crate::contact_law::ContactLaw;
 use crate::enforcement::Enforcement;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
-use crate::points::{Anchor, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
+use crate::points::{Anchor, Direction, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
 pub(crate) use axes::axes;
 use partner::Partners;
 use signorini_geometry::Vector;
@@ -258,18 +258,32 @@ impl Contact {
 
     /// The gap beyond which a site is open whatever it meets.
     fn closes_within(&self, k: usize, sides: &Sides<'_>, unknown: [f64; 3]) -> f64 {
-        let base = self.law.enforcement.takes_stress().then(|| {
-            let stress = sides.slave.0.traction(sides.slave.1, &self.sites[k]);
-            stress.map_or(f64::INFINITY, |s| s.vector.norm())
-        });
+        self.opens_beyond(k, unknown, || self.stress(k, sides).map_or(f64::INFINITY, |s| s.vector.norm()))
+    }
+
+    fn opens_beyond(&self, k: usize, unknown: [f64; 3], traction: impl FnOnce() -> f64) -> f64 {
+        let base = self.law.enforcement.takes_stress().then(traction);
         let pressing = self.law.pressing(k, unknown[0], base);
         self.law.farthest(k, pressing)
     }
 
-    fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> MeasuredPair {
+    /// Whether a site is seen to be open without all that moves it.
+    fn is_far(&self, k: usize, sides: &Sides<'_>, master: &dyn Master, unknown: [f64; 3]) -> bool {
+        let site = &self.sites[k];
+        let Some((x, traction)) = sides.slave.0.position_and_traction(sides.slave.1, site) else { return false };
+        let farthest = self.opens_beyond(k, unknown, || traction);
+        let except = self.is_within().then_some(site);
+        farthest < self.reach && master.gap(&x, self.reach, except).is_some_and(|gap| gap > farthest)
+    }
+
+    /// The traction of a site by the stress of its body, where the enforcement is by that.
+    fn stress(&self, k: usize, sides: &Sides<'_>) -> Option<Direction> {
         let (body, state) = sides.slave;
-        let stress = self.law.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten();
-        let stress = stress.map(|s| Stress::new(&s, sides.first[0], &mut pair));
+        self.law.enforcement.takes_stress().then(|| body.traction(state, &self.sites[k])).flatten()
+    }
+
+    fn with_stress(&self, k: usize, sides: &Sides<'_>, mut pair: Pair) -> MeasuredPair {
+        let stress = self.stress(k, sides).map(|s| Stress::new(&s, sides.first[0], &mut pair));
         MeasuredPair { pair, stress }
     }
 }

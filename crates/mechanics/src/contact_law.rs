@@ -55,7 +55,8 @@ struct Stated {
     friction: Option<Box<dyn Law>>,
     enforcement: Enforcement,
     softness: f64,
-    stiffness: Vec<f64>,
+    /// Where points give way by a stiffness of their own.
+    stiffness: Option<Vec<f64>>,
 }
 
 /// What a point remembers beside its traction.
@@ -389,11 +390,15 @@ impl ContactLaw {
             self.enforcement = Enforcement::Penalty { wanted_penetration: None };
             self.softness = self.enforcement.softness();
         }
-        self.stated = Some(Stated { friction, enforcement, softness, stiffness: self.stiffness.clone() });
+        self.stated = Some(Stated { friction, enforcement, softness, stiffness: None });
     }
 
     /// Until [`restore`](ContactLaw::restore): each point gives way by this force per penetration, a function of its gap alone.
     pub(crate) fn give_way(&mut self, force_per_gap: f64) {
+        self.simplify(SimplerFriction::Smooth);
+        if let Some(stated) = &mut self.stated {
+            stated.stiffness = Some(self.stiffness.clone());
+        }
         self.softness = 1.0;
         self.stiffness.iter_mut().zip(&self.areas).for_each(|(c, area)| *c = force_per_gap / area);
     }
@@ -409,6 +414,9 @@ impl ContactLaw {
         if stated.friction.is_some() {
             self.friction = stated.friction;
         }
-        (self.enforcement, self.softness, self.stiffness) = (stated.enforcement, stated.softness, stated.stiffness);
+        (self.enforcement, self.softness) = (stated.enforcement, stated.softness);
+        if let Some(stiffness) = stated.stiffness {
+            self.stiffness = stiffness;
+        }
     }
 }

@@ -25,17 +25,6 @@ const NEAR: f64 = 1e-9;
 const SPRINGS: f64 = 1e-3;
 
 impl System {
-    /// Whether all that may touch is apart in a state: no friction has begun anywhere.
-    pub(crate) fn touches_nothing(&self, state: &SystemState) -> Result<bool, IncrementError> {
-        let near = NEAR * self.size();
-        for k in 0..self.contacts.len() {
-            if self.sites_at_limit(k, state)?.iter().any(|site| site.gap.is_some_and(|gap| gap <= near)) {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
     /// Newton's method from where ropes are drawn tight over what they touch; none where that leads nowhere.
     pub(crate) fn laid_down(
         &mut self,
@@ -54,6 +43,35 @@ impl System {
         }
     }
 
+    /// The same where nothing touches at the start, so that no friction has begun anywhere.
+    pub(crate) fn laid_from_afar(
+        &mut self,
+        start: &SystemState,
+        time: f64,
+        solved: &mut Solved,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Option<Result<Converged<SystemState>, IncrementError>> {
+        if self.soften(1.0) == 0.0 {
+            return None;
+        }
+        match self.touches_nothing(start) {
+            Ok(true) => self.laid_down(start, time, solved, report),
+            Ok(false) => None,
+            Err(error) => Some(Err(error)),
+        }
+    }
+
+    /// Whether all that may touch is apart in a state.
+    fn touches_nothing(&self, state: &SystemState) -> Result<bool, IncrementError> {
+        let near = NEAR * self.size();
+        for k in 0..self.contacts.len() {
+            if self.sites_at_limit(k, state)?.iter().any(|site| site.gap.is_some_and(|gap| gap <= near)) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// A state near equilibrium, with multipliers that bear what acts, of ropes that touch something; none where there are no
     /// such ropes, a contact cannot give way, or none is found.
     ///
@@ -66,16 +84,16 @@ impl System {
         solved: &mut Solved,
         report: &mut dyn FnMut(usize, f64) -> bool,
     ) -> Result<Option<SystemState>, IncrementError> {
-        let stiffest = self.bodies.iter_mut().map(|body| body.soften(1.0)).fold(0.0, f64::max);
+        let stiffest = self.soften(1.0);
         let is_simplified = self.contacts.iter().any(|contact| contact.law().is_simplified());
         if stiffest == 0.0 || self.contacts.is_empty() || is_simplified || self.step.is_some() {
             return Ok(None);
         }
-        let found = match self.contacts.iter_mut().all(|contact| contact.give_way(None)) {
-            true => self.down_to_rest(start, time, stiffest, solved, report),
-            false => return Ok(None),
-        };
-        self.bodies.iter_mut().for_each(|body| _ = body.soften(1.0));
+        if !self.contacts.iter_mut().all(|contact| contact.give_way(None)) {
+            return Ok(None);
+        }
+        let found = self.down_to_rest(start, time, stiffest, solved, report);
+        self.soften(1.0);
         self.contacts.iter_mut().for_each(|contact| _ = contact.give_way(None));
         match found {
             Ok(state) => Ok(Some(state)),
@@ -101,7 +119,7 @@ impl System {
         let mut state = start.clone();
         let (mut share, mut scale) = ((SOFT * acts / stiffest).min(1.0), FIRST_SCALE);
         loop {
-            self.bodies.iter_mut().for_each(|body| _ = body.soften(share));
+            self.soften(share);
             self.contacts.iter_mut().for_each(|contact| _ = contact.give_way(Some(scale * per_size)));
             let mut problem = self.problem(&state, time, *solved)?;
             problem.way = Way::Down;

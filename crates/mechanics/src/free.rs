@@ -19,6 +19,8 @@ const DRIVEN: f64 = 0.1;
 /// What friction may hold is followed to rest where it moved by more of its size.
 const SLIDES: f64 = 1e-2;
 
+/// What turns as it moves: `1/√3` for a block or a rod about its corner or end, `1/√2` for a disc that rolls.
+const TIPS: f64 = 0.5;
 /// Share of what holds a body most that rounding leaves of what does not hold it.
 const NOT_HELD: f64 = 1e-10;
 
@@ -170,6 +172,11 @@ pub(crate) fn motion_in_words(
     turns: bool,
 ) -> String {
     let modes = body.rigid_modes(state);
+    if !is_spin.contains(&true)
+        && let Some(turn) = turn_of(&modes, step)
+    {
+        return in_words("turning about", turn);
+    }
     let along = |mode: &[f64]| {
         let kept = (0..step.len()).filter(|k| is_spin[*k] == turns);
         let [product, square] = kept.fold([0.0; 2], |[p, s], k| [p + mode[k] * step[k], s + mode[k] * mode[k]]);
@@ -177,10 +184,31 @@ pub(crate) fn motion_in_words(
     };
     let part = if turns { &modes[3..] } else { &modes[..3] };
     let direction = Vector::<3>::from_fn(|i, _| along(&part[i]));
+    in_words(if turns { "turning about" } else { "moving along" }, direction)
+}
+
+fn in_words(kind: &str, direction: Vector<3>) -> String {
     // What is rounded to zero has no sign.
     let d = direction.try_normalize(0.0).unwrap_or_default().map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
-    let kind = if turns { "turning about" } else { "moving along" };
     format!("{kind} ({:.3}, {:.3}, {:.3})", d[0], d[1], d[2])
+}
+
+/// The turn in a step of a body without spins, where it turns rather than moves: what tips about a corner or rolls turns by a
+/// part of what it moves, in the mean over its unknowns; what slides does not turn.
+fn turn_of(modes: &[Vec<f64>; 6], step: &[f64]) -> Option<Vector<3>> {
+    let modes: Vec<DVector<f64>> = modes.iter().map(|mode| DVector::from_column_slice(mode)).collect();
+    let without_translations = |x: DVector<f64>| {
+        modes[..3].iter().filter(|t| t.norm() > 0.0).fold(x, |x, t| &x - t * (x.dot(t) / t.norm_squared()))
+    };
+    let turns: Vec<DVector<f64>> = modes[3..].iter().map(|mode| without_translations(mode.clone())).collect();
+    let step = DVector::from_column_slice(step);
+    let rest = without_translations(step.clone());
+    let inertia = DMatrix::from_fn(3, 3, |i, j| turns[i].dot(&turns[j]));
+    let moment = DVector::from_fn(3, |i, _| turns[i].dot(&rest));
+    let least = NOT_HELD * inertia.trace();
+    let turn = inertia.svd(true, true).solve(&moment, least).ok()?;
+    let turned: f64 = turn.dot(&moment).max(0.0).sqrt();
+    (turned > TIPS * (&step - &rest).norm()).then(|| Vector::<3>::from_fn(|i, _| turn[i]))
 }
 
 impl Problem<'_> {
@@ -260,7 +288,12 @@ impl Problem<'_> {
         let body = &self.system.bodies[k];
         let own = first[k] as usize..first[k] as usize + body.unknowns();
         let (travel, is_spin) = (&at.travel[own.clone()], &self.is_spin[own]);
-        let motion = motion_in_words((body.as_ref(), &at.bodies[k]), (travel, is_spin), self.is_spin[unknown]);
+        // Rigid motions are those from where the body was before it went.
+        let mut before = at.bodies[k].clone();
+        if before.configuration.len() == travel.len() {
+            before.configuration.iter_mut().zip(travel).for_each(|(u, t)| *u -= t);
+        }
+        let motion = motion_in_words((body.as_ref(), &before), (travel, is_spin), self.is_spin[unknown]);
         let motion = if self.system.has_friction() && self.touches(k, at) {
             motion.replacen("moving", "sliding", 1)
         } else {

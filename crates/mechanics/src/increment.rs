@@ -250,14 +250,9 @@ impl System {
                 {
                     return Err(error);
                 }
-                failed => {
-                    let laid = match self.touches_nothing(start)? {
-                        true => self.laid_down(start, time, &mut solved, &mut counted),
-                        false => None,
-                    };
-                    if let Some(laid) = laid {
-                        laid?
-                    } else {
+                failed => match self.laid_from_afar(start, time, &mut solved, &mut counted) {
+                    Some(laid) => laid?,
+                    None => {
                         let start = self.by_penalties(start, time, &mut solved, &mut counted);
                         match (self.inner(start.as_ref().unwrap_or(&state), time, &mut solved, &mut counted), failed) {
                             (Ok(found), _) => found,
@@ -265,7 +260,7 @@ impl System {
                             (Err(error), _) => return Err(error),
                         }
                     }
-                }
+                },
             };
             iterations = done;
             state = found.state;

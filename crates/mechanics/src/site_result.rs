@@ -17,6 +17,10 @@ pub struct SiteResult {
     pub pressure: f64,
     /// Friction on the slave, per weight.
     pub friction: Vector<3>,
+    /// The part of it that acts on the centre line of a section that does not turn by itself, as that of a rope: a centre line
+    /// at the distance `r` of a surface of radius `R` is longer than its way on the surface, and friction on it smaller by
+    /// `R/(R + r)`.
+    pub on_centre_line: Option<Vector<3>>,
     pub status: Status,
     /// Slip in the last increment and in all.
     pub increment: Vector<3>,
@@ -60,9 +64,19 @@ impl SiteResult {
         self.x - self.normal * self.radius
     }
 
+    /// Where its force acts.
+    pub fn acts_at(&self) -> Point<3> {
+        if self.on_centre_line.is_some() { self.x } else { self.touches_at() }
+    }
+
+    /// Friction on the slave as its equilibrium has it, per weight.
+    pub fn acting_friction(&self) -> Vector<3> {
+        self.on_centre_line.unwrap_or(self.friction)
+    }
+
     /// The force on the slave.
     pub fn force(&self) -> Vector<3> {
-        (self.normal * self.pressure + self.friction) * self.weight
+        (self.normal * self.pressure + self.acting_friction()) * self.weight
     }
 
     /// Energy that its friction took in the last increment.

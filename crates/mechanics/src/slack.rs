@@ -62,7 +62,7 @@ impl System {
     }
 
     /// The stiffest of what may be slack, of which all is as soft as a part of it.
-    fn soften(&mut self, share: f64) -> f64 {
+    pub(crate) fn soften(&mut self, share: f64) -> f64 {
         self.bodies.iter_mut().map(|body| body.soften(share)).fold(0.0, f64::max)
     }
 

@@ -73,7 +73,7 @@ impl Shape {
             Shape::Image { image, .. } => image_bounds(image),
             Shape::Union(parts) => {
                 let all: Option<Vec<Aabb<3>>> = parts.iter().map(Shape::bounds).collect();
-                all?.into_iter().reduce(|a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)))
+                all?.into_iter().reduce(|a, b| a.joined(&b))
             }
             Shape::Intersection(parts) => {
                 (parts.iter().filter_map(Shape::bounds)).reduce(|a, b| Aabb::new(a.min.sup(&b.min), a.max.inf(&b.max)))

@@ -27,7 +27,5 @@ pub(super) fn longest(vertices: &[Point<2>]) -> f64 {
 
 /// The smallest box round points.
 pub(super) fn box_round(points: impl Iterator<Item = Point<2>>) -> Aabb<2> {
-    let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Point::<2>::repeat);
-    let [min, max] = points.fold(nowhere, |[min, max], x| [min.inf(&x), max.sup(&x)]);
-    Aabb::new(min, max)
+    Aabb::around(points).expect("a cell has nodes")
 }

@@ -163,7 +163,7 @@ impl MeshCells {
         let maps = rules.keys().max().map_or(0, |m| m + 1);
         let rules = (0..maps).map(|m| rules.remove(&m).unwrap_or_default()).collect();
         let box_of = |cell: usize| bounds_of(&mesh, &bent_at, &bent, cell);
-        let bounds = (1..count).map(box_of).fold(box_of(0), |a, b| Aabb::new(a.min.inf(&b.min), a.max.sup(&b.max)));
+        let bounds = (1..count).map(box_of).fold(box_of(0), |a, b| a.joined(&b));
         // About one cell in each bucket.
         let spacing = (total / count as f64).sqrt();
         let number = |k: usize| ((bounds.size()[k] / spacing).ceil() as usize).clamp(1, 4096);

@@ -5,7 +5,7 @@
 
 use super::line::KnotLine;
 use super::patch::{NurbsError, NurbsPatch};
-use signorini_geometry::Point;
+use signorini_geometry::{Aabb, Point};
 
 /// Positions closer than this part of the size of the body are one.
 const SAME: f64 = 1e-9;
@@ -131,12 +131,8 @@ impl JoinedSides {
 /// Sides with common corners and a common middle whose control points, weights or knots differ.
 pub fn joined_sides<const D: usize>(patches: &[NurbsPatch<D>]) -> Result<Vec<JoinedSides>, NurbsError> {
     let all: Vec<PatchSide> = (0..patches.len()).flat_map(PatchSide::all::<D>).collect();
-    let points = patches.iter().flat_map(|p| &p.points);
-    let (low, high) = points
-        .fold((Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY)), |(l, h), x| {
-            (l.inf(x), h.sup(x))
-        });
-    let near = SAME * (high - low).norm();
+    let bounds = Aabb::around(patches.iter().flat_map(|p| p.points.iter().copied()));
+    let near = bounds.map_or(0.0, |bounds| SAME * bounds.size().norm());
     let mut out: Vec<JoinedSides> = Vec::new();
     for (k, a) in all.iter().enumerate() {
         for b in &all[k + 1..] {

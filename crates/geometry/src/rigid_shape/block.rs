@@ -80,9 +80,7 @@ impl RigidShape for Block {
     }
 
     fn bounds(&self) -> Option<Aabb<3>> {
-        let corners = self.corners();
-        let fold = |by: fn(&Point<3>, &Point<3>) -> Point<3>| corners.iter().fold(corners[0], |m, x| by(&m, x));
-        Some(Aabb::new(fold(|a, b| a.inf(b)), fold(|a, b| a.sup(b))))
+        Aabb::around(self.corners())
     }
 
     /// Of a rectangle those of a plate of thickness one.

@@ -30,6 +30,9 @@ impl Contact {
             let is_closed = |touch: &MeasuredPair| {
                 linearises && self.traction(k, touch, at, ([0.0; 2], false)).projected.status != Status::Open
             };
+            if self.partners.get().is_none() && self.is_far(k, sides, master.as_ref(), at) {
+                return None;
+            }
             let farthest = self.closes_within(k, sides, at);
             self.pair(k, sides, (master.as_ref(), farthest), is_closed).1
         };

@@ -16,7 +16,6 @@ use crate::pair::Stuck;
 use crate::part::Part;
 use crate::points::{Function, MaterialPoint, Sampling, Site};
 use crate::shown_surface::{ShownSurface, between_sites};
-use crate::simpler::SimplerFriction;
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_geometry::{Point, Vector};
@@ -140,7 +139,6 @@ impl Iterated for Contact {
     fn give_way(&mut self, force_per_gap: Option<f64>) -> bool {
         self.law.restore();
         if let Some(force_per_gap) = force_per_gap {
-            self.law.simplify(SimplerFriction::Smooth);
             self.law.give_way(force_per_gap);
         }
         true

@@ -3,7 +3,8 @@
 use super::axes::axes;
 use super::{Contact, Sides, SiteMemory};
 use crate::body::PlaceError;
-use crate::points::{Master, MaterialPoint};
+use crate::pair::Pair;
+use crate::points::{Master, MaterialPoint, SlavePoint};
 use crate::site_result::SiteResult;
 use rayon::prelude::*;
 use signorini_contact::Status;
@@ -33,6 +34,9 @@ impl Contact {
             if let Some(law) =
                 self.law.friction.as_ref().filter(|law| law.is_tangential() && out.status != Status::Open)
             {
+                if placed.tangent.is_some() && placed.radius > 0.0 && placed.spin.is_empty() {
+                    out.on_centre_line = Some(on_centre_line(&placed, sides.first[0], pair, &out.friction));
+                }
                 out.increment = found.axes[0] * found.slip[0] + found.axes[1] * found.slip[1];
                 out.utilisation = law.utilisation([t1, t2], p);
                 let before = self.memory[k].slip;
@@ -93,4 +97,16 @@ impl Contact {
         self.law.accept(tractions);
         Ok(())
     }
+}
+
+/// Friction as it acts on a point that it moves by `slip` per unit of each unknown: by the unknown that moves the point most along
+/// each axis.
+fn on_centre_line(placed: &SlavePoint, first: u32, pair: &Pair, friction: &Vector<3>) -> Vector<3> {
+    Vector::from_fn(|i, _| {
+        let Some(by) = placed.functions.iter().max_by(|a, b| a.value[i].abs().total_cmp(&b.value[i].abs())) else {
+            return 0.0;
+        };
+        let place = pair.unknowns.iter().position(|unknown| *unknown == first + by.unknown);
+        place.map_or(0.0, |a| friction.dot(&pair.slip[a]) / by.value[i])
+    })
 }

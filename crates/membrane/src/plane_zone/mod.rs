@@ -239,5 +239,5 @@ fn curvatures(curve: &ClosedCurve) -> impl Iterator<Item = f64> + '_ {
 
 /// The smallest box round points.
 fn bounding_box(points: &[Point<2>]) -> Aabb<2> {
-    points.iter().fold(Aabb::new(points[0], points[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)))
+    Aabb::around(points.iter().copied()).expect("a curve has points")
 }

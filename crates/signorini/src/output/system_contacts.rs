@@ -123,8 +123,9 @@ pub fn draw(
     let many = drawn.len() > MOST_KEYS;
     for &(contact, own) in &drawn {
         let closed = contact.closed();
-        let alike = drawn.iter().filter(|(other, _)| other.carries == contact.carries);
-        let most = if many { alike.clone().map(|(_, most)| *most).fold(0.0, f64::max) } else { own };
+        let is_alike = |(other, _): &&(&ContactShown, f64)| many && other.carries == contact.carries;
+        let alike: Vec<f64> = drawn.iter().filter(is_alike).map(|(_, most)| *most).collect();
+        let most = alike.iter().fold(own, |most, other| most.max(*other));
         let mut feet: Vec<(f64, f64)> = Vec::new();
         for &k in closed.iter().step_by(closed.len().div_ceil(LINES)) {
             let x = contact.at(k);
@@ -142,10 +143,9 @@ pub fn draw(
                 Sign::Dot(FRONT).draw(&mut page.svg, a - 11.0, b);
             }
         }
-        let count = alike.count();
         let on = match shown.contacts.len() {
             1 => "contact".to_string(),
-            _ if many && count > 1 => format!("{count} contacts"),
+            _ if alike.len() > 1 => format!("{} contacts", alike.len()),
             _ => contact.fields.name.clone(),
         };
         let what = match contact.carries {

@@ -32,12 +32,9 @@ impl Surface {
 
 /// The box of points, and beyond it by a part of its size.
 pub fn box_around(points: impl Iterator<Item = Point<3>>, part: f64) -> Aabb<3> {
-    let (mut low, mut high) = (Vector::<3>::repeat(f64::INFINITY), Vector::<3>::repeat(f64::NEG_INFINITY));
-    for x in points {
-        (low, high) = (low.inf(&x), high.sup(&x));
-    }
-    let pad = Vector::<3>::repeat(part * (high - low).max().max(f64::MIN_POSITIVE));
-    Aabb::new(low - pad, high + pad)
+    let Aabb { min, max } = Aabb::around(points).expect("a path has points");
+    let pad = Vector::<3>::repeat(part * (max - min).max().max(f64::MIN_POSITIVE));
+    Aabb::new(min - pad, max + pad)
 }
 
 /// The surfaces of all bodies at all times: of those without an end the part in a box.

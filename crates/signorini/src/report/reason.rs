@@ -118,6 +118,8 @@ pub enum WarningKind {
     NotUnique,
     /// Most of a contact with friction closes in one increment. The stick zones depend on the increments.
     ClosesAtOnce,
+    /// The contact pressure oscillates from node to node of the slave. Resultants are right, pressures are not.
+    PressureOscillates,
     /// Distance of the vertices of a mesh from the smooth surface through them.
     Scatter,
 }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod events;
 mod frame;
+mod oscillation;
 mod parts;
 mod path;
 pub(crate) mod recovered;

@@ -181,3 +181,32 @@ fn contact_on_a_few_points_of_coarse_cells_is_told_with_the_cells_that_it_needs(
     assert_eq!(verdict, "right_but", "{text}");
     assert!(text.contains("cells wide") && text.contains("instead of"), "{text}");
 }
+
+/// A disc of finite cells whose whole surface is held, pressed by a plane: nothing can give way, and what supports and contact
+/// share out between them is no state.
+#[test]
+fn a_held_surface_that_is_pressed_is_no_answer() {
+    let case = r#"
+space = "plane_strain"
+[bodies.disc.cells]
+geometry.sphere = { center = [0, 0], radius = 1 }
+mesh.grid = { cells = [6, 6] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 10, poissons_ratio = 0.3 }
+groups.all = "y > -5"
+[bodies.plane.rigid]
+shape.plane = { point = [0, 1], normal = [0, -1] }
+motion.prescribed = { displacement = [0, "-0.05*t"] }
+[supports.hold]
+on = "disc:all"
+displacement = [0, 0]
+[contacts.c]
+between = ["disc", "plane"]
+[[steps]]
+to = 1
+"#;
+    let (found, verdict, text) = answer(case);
+    assert_eq!(verdict, "not_an_answer", "{text}");
+    assert_eq!(found["reason"], "refused", "{text}");
+    assert!(text.contains("the surface does not give way"), "{text}");
+}

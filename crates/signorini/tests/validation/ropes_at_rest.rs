@@ -79,3 +79,89 @@ friction.coulomb = {{ mu = {mu} }}
         assert!((force / pull / (1.0 + ratio * lean.cos()) - 1.0).abs() < 1e-2, "{play} {cells}: {force}");
     }
 }
+
+/// Half a turn of a thick rope on a drum with friction, held at one end and pulled at the other: force and moment of support, load
+/// and contact add up to nothing. Friction acts on the surface of the drum, tension along the centre line, which is longer: of
+/// the friction `R/(R + r)` acts on it, so that the tension grows by `exp(μ φ R/(R + r))`.
+#[test]
+fn the_forces_on_a_thick_rope_balance() {
+    for radius in [0.05, 0.5] {
+        let case = format!(
+            r#"
+space = "3d"
+[bodies.drum.rigid]
+shape.cylinder = {{ point = [0, 0, 0], axis = [0, 0, 1], radius = 1 }}
+[bodies.line.rope]
+path.helix = {{ radius = {}, pitch = 0, turns = 0.5, towards = [1, 0, 0] }}
+radius = {radius}
+cells = 60
+stiffness = 1e4
+pretension = 1
+[supports.hold]
+on = "line:start"
+displacement = [0, 0, 0]
+[loads.pull]
+on = "line:end"
+tension = "1 + t"
+[contacts.c]
+between = ["line", "drum"]
+friction.coulomb = {{ mu = 0.3 }}
+[[steps]]
+to = 1
+increments = 4
+"#,
+            1.0 + radius
+        );
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found);
+        let contact = &step["contacts"]["c"];
+        let sum = |parts: [&serde_json::Value; 3], k: usize| parts.map(|v| number(&v[k])).iter().sum::<f64>();
+        for k in 0..3 {
+            let force = [&step["support_forces"]["hold"], &step["load_forces"]["pull"], &contact["force"]];
+            let moment = [&step["support_moments"]["hold"], &step["load_moments"]["pull"], &contact["moment"]];
+            let off = [sum(force, k), sum(moment, k)];
+            assert!(off.iter().all(|o| o.abs() < 1e-8), "{radius}: {off:?}");
+        }
+        // Where it all slips, from the free end on.
+        let held = number(&step["curves"]["line"]["start_tension"]);
+        let ratio = (0.3 * PI / (1.0 + radius)).exp();
+        assert!(2.0 / held < ratio * 1.01, "{radius}: {held}");
+    }
+}
+
+/// A heavy beam on a floor, one end lifted by `d`: it leaves the floor over the length `a = (24 EI d/w)^(1/4)`, and the end
+/// carries `w a/2`.
+#[test]
+fn a_heavy_beam_is_lifted() {
+    let case = r#"
+space = "3d"
+[bodies.b.beam]
+path.points = [[0, 0, 0.05], [10, 0, 0.05]]
+cells = 60
+section.stiffness = { EA = 1e6, GA = 1e6, EI = 1000, GJ = 1000 }
+radius = 0.05
+[bodies.f.rigid]
+shape.plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+[supports.y]
+on = "b"
+displacement = ["free", 0, "free"]
+[supports.s]
+on = "b:start"
+displacement = [0, 0, "free"]
+[supports.e]
+on = "b:end"
+displacement = ["free", 0, "0.026041666666666668*t"]
+[loads.w]
+on = "b"
+body_force = [0, 0, -1]
+[contacts.c]
+between = ["b", "f"]
+[[steps]]
+to = 1
+increments = 4
+"#;
+    let found = summary(case, &set(&[]));
+    assert_eq!(found["converged"], true, "{}", found["verdict"]);
+    let force = number(&last_step(&found)["support_forces"]["e"][2]);
+    assert!((force / 2.5 - 1.0).abs() < 1e-3, "{force}");
+}

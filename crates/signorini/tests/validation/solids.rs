@@ -400,3 +400,104 @@ between = [\"inner:top\", \"outer:bottom\"]\ntied = true
         assert!((moved / exact - 1.0).abs() < 1e-4, "{name}: {moved}, not {exact}");
     }
 }
+
+/// A stiff curved block of small cells as slave of a soft one of larger cells: the master cannot follow each node of the slave, and
+/// the pressure oscillates between its nodes. It is told, and not where the bodies stand the other way round.
+#[test]
+fn pressures_that_oscillate_are_told() {
+    let case = |between: &str| {
+        format!(
+            r#"
+space = "plane_strain"
+[bodies.stiff.solid]
+mesh.box = {{ min = [-1, 0], max = [1, 1], cells = [40, 4], map = ["x", "y + 0.2*x^2*(1 - y)"] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 1e6, poissons_ratio = 0.3 }}
+[bodies.soft.solid]
+mesh.box = {{ min = [-2, -1], max = [2, 0], cells = [50, 4] }}
+degree = 2
+material.linear_elastic = {{ youngs_modulus = 1, poissons_ratio = 0.3 }}
+[supports.below]
+on = "soft:bottom"
+displacement = [0, 0]
+[supports.above]
+on = "stiff:top"
+displacement = [0, -0.02]
+[contacts.c]
+between = [{between}]
+"#
+        )
+    };
+    let told = |between: &str| {
+        let found = summary(&case(between), &set(&[]));
+        let list = found["warnings"].as_array().expect("warnings").clone();
+        let is_told = list.iter().any(|w| w["kind"] == "pressure_oscillates");
+        assert_eq!(
+            is_told,
+            found["verdict"].as_str().expect("a verdict").contains("oscillates"),
+            "{}",
+            found["verdict"]
+        );
+        is_told
+    };
+    assert!(told(r#""stiff:bottom", "soft:top""#));
+    assert!(!told(r#""soft:top", "stiff:bottom""#));
+}
+
+/// A block with friction that is pushed at its top tips over before it slides, and a rope whose ends pull apart by more than
+/// friction holds slides: both are told by name.
+#[test]
+fn what_tips_and_what_slides_is_named() {
+    let tips = r#"
+space = "plane_strain"
+[bodies.block.solid]
+mesh.box = { min = [-5, 0], max = [5, 30], cells = [4, 12] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 1e6, poissons_ratio = 0.2 }
+[bodies.floor.rigid]
+shape.plane = { point = [0, 0], normal = [0, 1] }
+[loads.weight]
+on = "block"
+body_force = [0, -0.1]
+[loads.push]
+on = "block:top"
+force = ["6*t", 0]
+[contacts.foot]
+between = ["block:bottom", "floor"]
+friction.coulomb = { mu = 0.5 }
+[[steps]]
+to = 1
+increments = 2
+"#;
+    let verdict = summary(tips, &set(&[]))["verdict"].as_str().expect("a verdict").to_string();
+    assert!(verdict.contains("against turning about (0.000, 0.000, -1.000)"), "{verdict}");
+    let slides = r#"
+space = "3d"
+[bodies.line.rope]
+path.helix = { radius = 1, pitch = 0, turns = 0.5, towards = [1, 0, 0] }
+cells = 40
+stiffness = 1e5
+pretension = 1
+[bodies.drum.rigid]
+shape.cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 1 }
+[loads.low]
+on = "line:start"
+tension = 1
+[loads.high]
+on = "line:end"
+tension = "1 + 2*t"
+[contacts.wrap]
+between = ["line", "drum"]
+friction.coulomb = { mu = 0.3 }
+[[steps]]
+to = 1
+increments = 4
+"#;
+    let found = summary(slides, &set(&[]));
+    let verdict = found["verdict"].as_str().expect("a verdict");
+    // e^(0.3 π) = 2.57 at t = 0.78.
+    assert!(
+        found["converged"] == false && verdict.contains("`wrap` uses 9") && verdict.contains("slides"),
+        "{verdict}"
+    );
+}

@@ -208,8 +208,7 @@ impl Planner<'_> {
         // Sides are numbered as listed; a clockwise list is stored in reverse.
         groups
             .extend((0..n).map(|i| (format!("side_{}", i + 1), vec![if clockwise { (2 * n - 2 - i) % n } else { i }])));
-        let bounds =
-            corners.iter().fold(Aabb::new(corners[0], corners[0]), |b, p| Aabb::new(b.min.inf(p), b.max.sup(p)));
+        let bounds = Aabb::around(corners.iter().copied()).expect("a polygon has corners");
         Ok((Arc::new(PolygonDomain::new(corners)), bounds.scaled(MARGIN), Pieces { groups, apart: None }))
     }
 }

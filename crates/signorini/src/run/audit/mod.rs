@@ -50,13 +50,15 @@ fn surface(shape: &dyn RigidShape, bounds: &Aabb<3>, in_space: bool) -> Vec<Poin
 }
 
 /// Numbers of a touch in a checkpoint.
-const NUMBERS: usize = 21;
+const NUMBERS: usize = 28;
 
 fn to_numbers(t: &Touch) -> Vec<f64> {
-    let vectors = [&t.x, &t.foot, &t.normal, &t.friction, &t.slip];
+    let (acts_at, acting) = t.on_centre_line.unwrap_or_default();
+    let vectors = [&t.x, &t.foot, &t.normal, &t.friction, &t.slip, &acts_at, &acting];
     let mut out: Vec<f64> = vectors.iter().flat_map(|v| [v[0], v[1], v[2]]).collect();
-    let flags = [t.is_closed, t.slips].map(|flag| f64::from(u8::from(flag)));
-    out.extend([t.weight, t.area, t.pressure, flags[0], flags[1], t.worn]);
+    let flags = [t.is_closed, t.slips, t.on_centre_line.is_some()].map(|flag| f64::from(u8::from(flag)));
+    out.extend([t.weight, t.area, t.pressure, t.worn]);
+    out.extend(flags);
     out
 }
 
@@ -71,12 +73,13 @@ fn of_numbers(n: &[f64]) -> Option<Touch> {
         normal: vector(2),
         friction: vector(3),
         slip: vector(4),
-        weight: n[15],
-        area: n[16],
-        pressure: n[17],
-        is_closed: n[18] != 0.0,
-        slips: n[19] != 0.0,
-        worn: n[20],
+        on_centre_line: (n[27] != 0.0).then(|| (vector(5), vector(6))),
+        weight: n[21],
+        area: n[22],
+        pressure: n[23],
+        worn: n[24],
+        is_closed: n[25] != 0.0,
+        slips: n[26] != 0.0,
     })
 }
 
@@ -117,12 +120,6 @@ fn restored(value: &Value, time: f64, bodies: Vec<Placement>) -> Option<State> {
 /// The work of a force that was another one before, on the way of its place, and how far it may be off.
 fn mean_work(before: &Vector<3>, now: &Vector<3>, moved: &Vector<3>) -> [f64; 2] {
     [0.5 * (before + now).dot(moved), 0.5 * (now - before).dot(moved).abs()]
-}
-
-/// The box of points; none without points.
-fn around(points: &[Point<3>]) -> Option<Aabb<3>> {
-    let first = *points.first()?;
-    Some(points.iter().fold(Aabb::new(first, first), |b, x| Aabb::new(b.min.inf(x), b.max.sup(x))))
 }
 
 /// The largest side of a box.

@@ -61,7 +61,11 @@ const NOT_CANCELLED: f64 = 0.1;
 /// The ± of force, area and largest pressure, relative to them.
 fn shares(force: &[f64; 3], area: f64, pressure: f64, errors: &ErrorEstimate) -> [f64; 3] {
     let size = force.iter().map(|f| f * f).sum::<f64>().sqrt().max(NOT_CANCELLED * area * pressure);
-    let share = |error: f64, of: f64| if of > 0.0 { error / of } else { 0.0 };
+    let share = |error: f64, of: f64| match (error > 0.0, of > 0.0) {
+        (true, true) => error / of,
+        (true, false) => 1.0,
+        _ => 0.0,
+    };
     [share(errors.force, size), share(errors.area, area), share(errors.max_pressure.unwrap_or(0.0), pressure)]
 }
 
@@ -98,9 +102,11 @@ pub fn of_warnings(warnings: &[Warning], time: f64) -> Vec<Finding> {
     for warning in warnings.iter().filter(|w| w.time == Some(time)) {
         let check = match warning.kind {
             WarningKind::SteepSlopes => Check::Range,
-            WarningKind::NotResolved | WarningKind::NotRefined | WarningKind::FewerModes | WarningKind::SharpFront => {
-                Check::Resolution
-            }
+            WarningKind::PressureOscillates
+            | WarningKind::NotResolved
+            | WarningKind::NotRefined
+            | WarningKind::FewerModes
+            | WarningKind::SharpFront => Check::Resolution,
             WarningKind::Kink | WarningKind::FrontsAtRest => Check::Resolution,
             WarningKind::Unstable => Check::Stability,
             WarningKind::NotUnique | WarningKind::ClosesAtOnce => Check::Uniqueness,

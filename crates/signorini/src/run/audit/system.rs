@@ -1,6 +1,6 @@
 //! A system of bodies as plain data.
 
-use super::{ROUNDING, STRAIN, around, extent, law_of, mean_work, restored, saved, surface};
+use super::{ROUNDING, STRAIN, extent, law_of, mean_work, restored, saved, surface};
 use crate::plan::mechanics::{Kind, MechanicsPlan};
 use crate::plan::planner::Planner;
 use crate::problem::units::LENGTH;
@@ -13,7 +13,7 @@ use signorini_audit::{
 };
 use signorini_contact::{Law, Status};
 use signorini_geometry::rigid::RigidMotion;
-use signorini_geometry::{Point, Vector};
+use signorini_geometry::{Aabb, Point, Vector};
 use signorini_mechanics::system::{Support, TimedLoad};
 use signorini_mechanics::{
     BodyFields, BodyState, Contribution, IncrementResult, Order, Sampling, SiteResult, System, SystemState, Unstable,
@@ -133,7 +133,7 @@ fn setting(plan: &MechanicsPlan) -> Setting {
                 let placed: Vec<_> = placed.iter().map(|site| body.placed(state, site)).collect();
                 let balls = placed.iter().filter(|p| p.radius > 0.0).map(|p| (p.x, p.radius)).collect();
                 let mut points: Vec<Point<3>> = placed.iter().filter(|p| p.radius == 0.0).map(|p| p.x).collect();
-                let around = shape.bounds().or_else(|| around(&points));
+                let around = shape.bounds().or_else(|| Aabb::around(points.iter().copied()));
                 let in_space = space == Space::ThreeD;
                 points.extend(around.iter().flat_map(|bounds| surface(shape.as_ref(), bounds, in_space)));
                 let size = around.map_or(0.0, |b| extent(&b, in_space));
@@ -233,6 +233,7 @@ fn touch(s: &SiteResult) -> Touch {
         slips: s.status == Status::Slip,
         pressure: if s.status == Status::Open { 0.0 } else { s.pressure },
         friction: if s.status == Status::Open { Vector::<3>::zeros() } else { s.friction },
+        on_centre_line: s.on_centre_line.filter(|_| s.status != Status::Open).map(|friction| (s.x, friction)),
         slip: s.increment,
         worn: s.worn,
     }

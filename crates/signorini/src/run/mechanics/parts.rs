@@ -6,7 +6,7 @@ use super::{Failure, MechanicsModel, recovered, tell_iteration};
 use crate::problem::CaseError;
 use crate::report::{ContactEvent, Reason, Warning, WarningKind};
 use serde::{Deserialize, Serialize};
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Moved, Moving, Stability};
+use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Moved, Moving, SiteResult, Stability};
 use signorini_solve::Progress;
 
 /// Share of an increment below which it is not cut any more.
@@ -24,6 +24,8 @@ const ROUNDING: f64 = 1e-12;
 /// as many as take about as long in small systems, and in large ones never less than a hard increment may take.
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
+/// One part of an increment may take as large a part of them, so that smaller parts are tried too.
+const ATTEMPTS: usize = 3;
 const MOST_SOLVED: usize = 800_000;
 
 /// What decides how increments are cut, from one to the next.
@@ -146,11 +148,13 @@ impl MechanicsModel {
             let part = target - reached;
             let mut seen = Vec::new();
             let mut is_given_up = false;
+            let mut is_cut_short = false;
             let mut report = |iteration: usize, residual: f64| {
                 tell_iteration(progress, index, target, (iteration, residual));
                 seen.push(residual);
                 is_given_up = total.residuals.len() + seen.len() - spent >= most;
-                !is_given_up && !progress.interrupted()
+                is_cut_short = seen.len() >= most / ATTEMPTS && part > smallest && whole > 0.0;
+                !is_given_up && !is_cut_short && !progress.interrupted()
             };
             let kept = if may_be_rejected { self.plan.system.histories() } else { Vec::new() };
             let found = self.plan.system.solve(&self.state, target, &mut report);
@@ -211,8 +215,10 @@ impl MechanicsModel {
                     };
                 }
                 Err(IncrementError::Interrupted) if is_given_up => {
-                    return Ok(Err(given_up(reason.as_ref(), target, total.residuals)));
+                    let remedy = self.at_the_limit().unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
+                    return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
+                Err(IncrementError::Interrupted) if is_cut_short => size = part * CUT,
                 Err(error) => {
                     let curable = !matches!(
                         error,
@@ -220,6 +226,9 @@ impl MechanicsModel {
                     );
                     if !curable || part <= smallest || whole <= 0.0 {
                         let mut failure = self.failed(&error, total.residuals);
+                        if let (IncrementError::NotConverged { .. }, Some(slides)) = (&error, self.at_the_limit()) {
+                            failure.text += &format!("; {slides}");
+                        }
                         if reached > before {
                             failure.text += &format!(" (the last equilibrium is at t = {reached:.6})");
                         }
@@ -230,6 +239,30 @@ impl MechanicsModel {
                 }
             }
         }
+    }
+
+    /// Which contacts use all of their friction in the last state, in words: from there on what they hold slides.
+    fn at_the_limit(&self) -> Option<String> {
+        let system = &self.plan.system;
+        let used = |k: usize| {
+            let sites = system.sites(k, &self.state).ok()?;
+            let force = |s: &SiteResult| s.weight * s.pressure.max(0.0);
+            let whole: f64 = sites.iter().map(force).sum();
+            Some(sites.iter().map(|s| force(s) * s.utilisation).sum::<f64>() / whole)
+        };
+        let of = |k: usize| {
+            let share = used(k).filter(|share| *share > NEAR_LIMIT)?;
+            Some(format!("`{}` uses {:.1} % of its friction", system.contacts[k].name(), 100.0 * share.min(1.0)))
+        };
+        let list: Vec<String> = (0..system.contacts.len()).filter_map(of).collect();
+        (!list.is_empty()).then(|| {
+            format!(
+                "at t = {:.6}, the last equilibrium, {}: what no more friction holds slides, and there is no equilibrium \
+                 beyond; hold it, or use a smaller load",
+                self.state.time,
+                list.join(", ")
+            )
+        })
     }
 
     /// What happened to the contacts in a part of an increment.
@@ -259,16 +292,20 @@ fn not_kept(error: f64, [from, to]: [f64; 2]) -> Warning {
     Warning::new(WarningKind::ErrorInTime, message).at_time(to)
 }
 
+/// Part of the available friction of a contact, in the mean over its pressure, that is all of it but for the size of increments.
+const NEAR_LIMIT: f64 = 0.95;
+const NO_EQUILIBRIUM: &str = "there may be no equilibrium: check that every loaded body is supported; use more increments, or \
+                              more cells";
+
 /// An increment that is given up, with what went wrong before.
-fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>) -> Failure {
+fn given_up(before: Option<&IncrementError>, time: f64, residuals: Vec<f64>, remedy: &str) -> Failure {
     let recent = &residuals[residuals.len().saturating_sub(LEAST_ITERATIONS / 3)..];
     let [low, high] = [(f64::min as fn(f64, f64) -> f64, f64::INFINITY), (f64::max, 0.0)]
         .map(|(choose, start)| recent.iter().copied().fold(start, choose));
     let count = residuals.len();
     let round = format!(
         "no state at t = {time} in {count} iterations of Newton's method: the residual alternates between {low:.1e} \
-         and {high:.1e} tolerances; there may be no equilibrium: check that every loaded body is supported; use more \
-         increments, or more cells"
+         and {high:.1e} tolerances; {remedy}"
     );
     let (reason, text) = match before {
         Some(IncrementError::NotConverged { worst: Some(worst), .. }) => (Reason::Newton, format!("{round}{worst}")),

@@ -88,7 +88,6 @@ pub fn step_report(
             add(&mut load_moments, &moment);
         }
     }
-    let probe = |x: &Point<3>| probed(system, &state.bodies, shown, x);
     let poses = system.bodies.iter().zip(&plan.kinds).zip(&state.bodies).filter_map(|((body, kind), state)| {
         let Kind::Rigid { centre, is_free: true, .. } = kind else { return None };
         let pose = rigid_body::Pose::of(state);
@@ -147,7 +146,7 @@ pub fn step_report(
                 (contact.name().to_string(), ContactReport { dissipation, ..report })
             })
             .collect(),
-        probes: plan.probes.iter().map(|(name, x)| (name.clone(), probe(x))).collect(),
+        probes: plan.probes.iter().map(|(name, x)| (name.clone(), probed(system, &state.bodies, shown, x))).collect(),
         curves: shown
             .curves
             .iter()
@@ -302,7 +301,7 @@ fn contact_report(
     ContactReport {
         force: vector(&resultant(closed().map(|s| s.force()))),
         moment: (plan.space != Space::Axisymmetric)
-            .then(|| vector(&resultant(closed().map(|s| (s.touches_at() - plan.moments_about).cross(&s.force()))))),
+            .then(|| vector(&resultant(closed().map(|s| (s.acts_at() - plan.moments_about).cross(&s.force()))))),
         carries: tested.carries,
         area: area_of_contact,
         zones: components.len(),
@@ -318,7 +317,7 @@ fn contact_report(
         slip_area: rubs.then(|| area(Status::Slip)),
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
-        friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.friction * s.weight)))),
+        friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.acting_friction() * s.weight)))),
         max_tension: holds.then(|| closed().map(|s| -s.pressure).fold(0.0, f64::max)),
         max_wear: wears.then(|| sites.iter().map(|s| s.worn).fold(0.0, f64::max)),
         worn_volume: wears.then(|| sites.iter().map(|s| s.worn * s.weight).sum()),
@@ -347,8 +346,8 @@ fn rope_limits((contact, tested): (&dyn Interaction, &ContactInfo), sites: &[Sit
     let [low, high] = found.log_ratio.map(f64::exp);
     let sideways = if tan_alpha > lateral { "slides sideways" } else { "is closest to sliding sideways" };
     let verdict = format!(
-        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it, without weight, admits T₁/T₀ from \
-         {low:.4} to {high:.4}",
+        "{sideways} at s = {:.4}: |tan α| = {tan_alpha:.4}, μ_g = {lateral:.4}; friction along it, without weight, \
+         admits T₁/T₀ from {low:.4} to {high:.4}",
         found.steepest.s
     );
     Some(RopeLimits {

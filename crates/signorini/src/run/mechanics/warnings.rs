@@ -1,5 +1,6 @@
 //! Warnings of what looks wrong with a state of a system, or happened in the increment before it.
 
+use super::oscillation::oscillates;
 use super::report::stability_report;
 use crate::output::system::SystemShown;
 use crate::plan::mechanics::MechanicsPlan;
@@ -71,10 +72,31 @@ fn warn_of_closing(plan: &MechanicsPlan, [before, now]: [&IncrementResult; 2], t
     }
 }
 
+/// Warns of pressures between bodies that deform which are those of single nodes.
+fn warn_of_oscillation(plan: &MechanicsPlan, result: &IncrementResult, shown: &SystemShown, record: &mut Record) {
+    let contacts = plan.system.contacts.iter().zip(&shown.contacts).zip(&result.sites);
+    for ((contact, seen), sites) in contacts {
+        let [slave, master] = contact.bodies().map(|k| &plan.system.bodies[k]);
+        let Some(surface) = &seen.surface else { continue };
+        if slave.is_rigid() || master.is_rigid() || !oscillates(surface, sites) {
+            continue;
+        }
+        let message = format!(
+            "contact `{}`: the pressure oscillates from node to node of the slave `{}`, which is stiffer than the master `{}` or \
+             has smaller cells; name the softer body, or the one of larger cells, first in `between`",
+            contact.name(),
+            slave.name(),
+            master.name()
+        );
+        record.warn_once(Warning::new(WarningKind::PressureOscillates, message).at_time(shown.time));
+    }
+}
+
 /// Warns of what looks wrong with a state, and of what happened in the increment before it.
 pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown: &SystemShown, record: &mut Record) {
     let time = shown.time;
     warn_of_closing(plan, [before, result], time, record);
+    warn_of_oscillation(plan, result, shown, record);
     if let Some(told) = &result.stability {
         warn_of_stability(&stability_report(&plan.system, told), (time, plan.follows_a_path()), record);
     }

@@ -232,7 +232,7 @@ fn a_bar_cools_with_time() {
     };
     let [coarse, fine] = [error(10), error(20)];
     let order = (coarse / fine).log2();
-    assert!((order - 1.0).abs() < 0.1 && fine.abs() < 0.02 * exact, "{coarse} {fine}");
+    assert!((order - 1.0).abs() < 0.1 && fine.abs() < 0.03 * exact, "{coarse} {fine}");
 }
 
 /// A block that is dragged over a rigid floor: the power `μ N v`, split as stated.

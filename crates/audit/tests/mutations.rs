@@ -126,7 +126,7 @@ fn block() -> Case {
             pressure: 0.5,
             friction: v(-0.5 * MU, 0.0, 0.0),
             slip: v(slip, 0.0, 0.0),
-            worn: 0.0,
+            ..Touch::default()
         };
         (0..=cells).map(touch).collect()
     };

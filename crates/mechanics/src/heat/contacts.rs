@@ -65,7 +65,7 @@ pub trait Conducting {
 
 /// The functions that move a point along the first axis, by the first unknown of each.
 pub(crate) fn first_unknowns(functions: &[Function], dimension: usize) -> Vec<(u32, f64)> {
-    let first = functions.iter().filter(|f| f.unknown as usize % dimension == 0);
+    let first = functions.iter().filter(|f| (f.unknown as usize).is_multiple_of(dimension));
     first.map(|f| (f.unknown, f.value[0])).collect()
 }
 

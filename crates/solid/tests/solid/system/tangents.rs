@@ -50,7 +50,7 @@ fn state(u: &[f64]) -> BodyState {
 /// A temperature that varies from place to place, with large thermal strains.
 fn heated<const D: usize>(body: SolidBody<D>) -> SolidBody<D> {
     body.with_heat(ThermalMaterial {
-        expansion: Some(Arc::new(|x| 0.03 * (1.0 + 0.5 * x[1]))),
+        expansion: Some(Arc::new(|x| 0.02 * (1.0 + 0.5 * x[1]))),
         stress_free: 0.5,
         initial: Arc::new(|x| 2.0 + x[0] - 1.5 * x[0] * x[1]),
         conductivity: None,

@@ -24,8 +24,6 @@ const ROUNDING: f64 = 1e-12;
 /// as many as take about as long in small systems, and in large ones never less than a hard increment may take.
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
-/// One part of an increment may take as large a part of them, so that smaller parts are tried too.
-const ATTEMPTS: usize = 3;
 const MOST_SOLVED: usize = 800_000;
 
 /// What decides how increments are cut, from one to the next.
@@ -148,13 +146,11 @@ impl MechanicsModel {
             let part = target - reached;
             let mut seen = Vec::new();
             let mut is_given_up = false;
-            let mut is_cut_short = false;
             let mut report = |iteration: usize, residual: f64| {
                 tell_iteration(progress, index, target, (iteration, residual));
                 seen.push(residual);
                 is_given_up = total.residuals.len() + seen.len() - spent >= most;
-                is_cut_short = seen.len() >= most / ATTEMPTS && part > smallest && whole > 0.0;
-                !is_given_up && !is_cut_short && !progress.interrupted()
+                !is_given_up && !progress.interrupted()
             };
             let kept = if may_be_rejected { self.plan.system.histories() } else { Vec::new() };
             let found = self.plan.system.solve(&self.state, target, &mut report);
@@ -218,7 +214,6 @@ impl MechanicsModel {
                     let remedy = self.at_the_limit().unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
-                Err(IncrementError::Interrupted) if is_cut_short => size = part * CUT,
                 Err(error) => {
                     let curable = !matches!(
                         error,

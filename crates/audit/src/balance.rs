@@ -2,6 +2,7 @@
 //! all parts of them are known.
 
 use crate::finding::{Check, Finding, Outcome};
+use crate::nearest::mean;
 use crate::state::{Body, Contact, Form, Placement, Setting, State, Touch};
 use signorini_geometry::{Point, Vector};
 
@@ -60,8 +61,7 @@ fn turned(setting: &Setting, state: &State, body: usize) -> f64 {
     if solid.strain_limit.is_none() || solid.rest.len() != now.len() || now.is_empty() {
         return 0.0;
     }
-    let middle = |list: &[Point<3>]| list.iter().sum::<Point<3>>() / list.len() as f64;
-    let [from, to] = [middle(&solid.rest), middle(now)];
+    let [from, to] = [mean(&solid.rest), mean(now)];
     let apart = |(a, b): (&Point<3>, &Point<3>)| ((b - to) - (a - from)).norm();
     let most = solid.rest.iter().zip(now).map(apart).fold(0.0, f64::max);
     let size = solid.rest.iter().map(|x| (x - from).norm()).fold(f64::MIN_POSITIVE, f64::max);

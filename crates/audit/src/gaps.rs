@@ -5,7 +5,7 @@
 //! mean over cells. Where nothing carries only the sagitta explains it: nothing keeps the bodies apart there.
 
 use crate::finding::{Check, Finding, Outcome};
-use crate::nearest::of_segments;
+use crate::nearest::{mean, of_segments};
 use crate::obstacle::{Found, Obstacle};
 use crate::samples::{self, Sample, thickness, turns};
 use crate::state::{Contact, Curve, Form, Placement, Setting, Space, State, Touch};
@@ -187,8 +187,7 @@ fn judge(
 /// The mean displacement of a solid; none of another body.
 fn shift_of(form: &Form, placement: &Placement) -> Option<Vector<3>> {
     let (Form::Solid(solid), Placement::Points(now)) = (form, placement) else { return None };
-    let moved = now.iter().zip(&solid.rest).map(|(x, rest)| x - rest).sum::<Vector<3>>();
-    (!now.is_empty()).then(|| moved / now.len() as f64)
+    (!now.is_empty()).then(|| mean(now) - mean(&solid.rest))
 }
 
 fn told(setting: &Setting, contact: &Contact, deepest: &Deepest) -> Finding {

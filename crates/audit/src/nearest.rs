@@ -7,6 +7,11 @@ pub fn centre(points: &[Point<3>], list: &[u32]) -> Point<3> {
     list.iter().map(|k| points[*k as usize]).sum::<Point<3>>() / list.len().max(1) as f64
 }
 
+/// The mean of points; the origin of none.
+pub fn mean(points: &[Point<3>]) -> Point<3> {
+    points.iter().sum::<Point<3>>() / points.len().max(1) as f64
+}
+
 /// The outward normal of a facet by its area; in the plane by its length, of cells that go round counter-clockwise.
 pub fn area_normal(points: &[Point<3>], facet: &[u32]) -> Vector<3> {
     let x = |k: usize| points[facet[k] as usize];

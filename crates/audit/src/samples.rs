@@ -1,6 +1,6 @@
 //! Points on bodies, four times as dense along each direction as the cells that show them where something is near.
 
-use crate::nearest::{centre, extent};
+use crate::nearest::{extent, mean};
 use crate::state::{Curve, Form, Placement, Rigid, Solid};
 use rayon::prelude::*;
 use signorini_geometry::{Aabb, Point};
@@ -133,9 +133,6 @@ pub fn thickness(points: &[Point<3>], directions: &[usize]) -> f64 {
 pub fn middle(form: &Form, placement: &Placement) -> Point<3> {
     match form {
         Form::Rigid(rigid) => placement.motion().point(&rigid.centre),
-        _ => {
-            let points = placement.points();
-            centre(points, &(0..points.len() as u32).collect::<Vec<_>>())
-        }
+        _ => mean(placement.points()),
     }
 }

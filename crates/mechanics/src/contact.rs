@@ -41,7 +41,7 @@ use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Anchor, Direction, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
 pub(crate) use axes::axes;
 use partner::Partners;
-use signorini_geometry::Vector;
+use signorini_geometry::{Point, Vector};
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -216,11 +216,7 @@ impl Contact {
             return (placed, None);
         }
         let except = self.is_within().then_some(site);
-        if farthest < self.reach
-            && master
-                .gap(&placed.x, self.reach + placed.radius, except)
-                .is_some_and(|gap| gap > farthest + placed.radius)
-        {
+        if self.is_beyond(farthest, (&placed.x, placed.radius), master, except) {
             return (placed, None);
         }
         let met: Option<MasterProjection> = match &placed.averaged {
@@ -272,8 +268,12 @@ impl Contact {
         let site = &self.sites[k];
         let Some((x, traction)) = sides.slave.0.position_and_traction(sides.slave.1, site) else { return false };
         let farthest = self.opens_beyond(k, unknown, || traction);
-        let except = self.is_within().then_some(site);
-        farthest < self.reach && master.gap(&x, self.reach, except).is_some_and(|gap| gap > farthest)
+        self.is_beyond(farthest, (&x, 0.0), master, self.is_within().then_some(site))
+    }
+
+    /// Whether a ball about a point is farther from the master than some gap.
+    fn is_beyond(&self, gap: f64, (x, radius): (&Point<3>, f64), master: &dyn Master, except: Option<&Site>) -> bool {
+        gap < self.reach && master.gap(x, self.reach + radius, except).is_some_and(|found| found > gap + radius)
     }
 
     /// The traction of a site by the stress of its body, where the enforcement is by that.

@@ -34,7 +34,7 @@ use edge::EdgeCurve;
 use faces::Faces;
 use rayon::prelude::*;
 use signorini_fem::{DofMap, Group, Mesh, MeshError};
-use signorini_geometry::Point;
+use signorini_geometry::{Aabb, Point};
 use signorini_material::{History, SolidMaterial, Space, StrainError, StressLaw};
 use signorini_mechanics::curve::CurveMaster;
 use signorini_mechanics::pair::axis;
@@ -140,9 +140,8 @@ impl<const D: usize> SolidBody<D> {
         check_material(body, &tables, &material)?;
         let position = hold::position(&bodies);
         let faces = Faces::new(&bodies, &groups);
-        let (mut low, mut high) = (Point::<D>::repeat(f64::INFINITY), Point::<D>::repeat(f64::NEG_INFINITY));
-        body.mesh.nodes().iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
-        let size = (high - low).max();
+        let bounds = Aabb::around(body.mesh.nodes().iter().copied()).expect("a mesh has nodes");
+        let size = bounds.size().max();
         let mut out = SolidBody {
             bodies,
             material,

@@ -7,6 +7,7 @@
 
 use super::{TriangleMesh, triangle_box, triangle_triangle};
 use crate::scale::unit_for;
+use crate::sets::root;
 use crate::{Point, Vector};
 
 /// How a mesh tells the side of a point.
@@ -111,13 +112,6 @@ impl TriangleMesh {
 
     /// The number of parts that share no edge.
     fn shells(&self) -> usize {
-        fn root(parent: &mut [u32], mut k: u32) -> u32 {
-            while parent[k as usize] != k {
-                parent[k as usize] = parent[parent[k as usize] as usize];
-                k = parent[k as usize];
-            }
-            k
-        }
         let mut parent: Vec<u32> = (0..self.edge_count as u32).collect();
         for [a, b, c] in &self.edges {
             let r = root(&mut parent, *a);

@@ -5,6 +5,7 @@ use super::{Block, Blocks, ContactFlow, Equation, Heat, HeatError, HeatResult};
 use crate::increment_error::IncrementError;
 use crate::site_result::SiteResult;
 use crate::system::{System, SystemState};
+use signorini_geometry::sets::root;
 use signorini_solve::cholesky::Symbolic;
 use signorini_solve::{SolveError, SymmetricMatrix};
 
@@ -177,13 +178,6 @@ impl System {
     /// Whether a way of heat leads from each coefficient to one that is held, or to a fluid.
     fn check_floating(&self, at: &Assembled, blocks: &Blocks) -> Result<(), HeatError> {
         let mut parent: Vec<u32> = (0..at.count as u32).collect();
-        fn root(parent: &mut [u32], mut k: u32) -> u32 {
-            while parent[k as usize] != k {
-                parent[k as usize] = parent[parent[k as usize] as usize];
-                k = parent[k as usize];
-            }
-            k
-        }
         for (functions, _) in blocks {
             for pair in functions.windows(2) {
                 let [a, b] = [pair[0], pair[1]].map(|k| root(&mut parent, k));

@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use signorini_fem::Local;
 use signorini_fem::hierarchic::Values;
 use signorini_fem::small::inverse;
-use signorini_geometry::Point;
+use signorini_geometry::{Aabb, Point};
 use signorini_material::von_mises;
 use signorini_mechanics::{BodyState, PointValues};
 
@@ -38,12 +38,10 @@ impl<const D: usize> SolidBody<D> {
     /// Reference coordinates of a point in a cell; none where it is not in it.
     fn local(&self, cell: usize, x: &Point<D>) -> Option<Local> {
         let mesh = &self.body().mesh;
-        let nodes = || mesh.cell_nodes(cell).iter().map(|n| mesh.nodes()[*n as usize]);
-        let first = nodes().next()?;
-        let (low, high) = nodes().fold((first, first), |(l, h), p| (l.inf(&p), h.sup(&p)));
+        let bounds = Aabb::around(mesh.cell_nodes(cell).iter().map(|n| mesh.nodes()[*n as usize]))?;
         // A curved side reaches beyond its nodes by less than the size of the cell.
-        let size = (high - low).norm();
-        if (0..D).any(|k| x[k] < low[k] - size || x[k] > high[k] + size) {
+        let size = bounds.size().norm();
+        if (0..D).any(|k| x[k] < bounds.min[k] - size || x[k] > bounds.max[k] + size) {
             return None;
         }
         let (map, shape) = (mesh.map(cell), mesh.shape(cell));

@@ -219,27 +219,10 @@ impl<const D: usize> ThermalBody for SolidBody<D> {
     }
 
     fn add_source(&self, on: Option<&str>, source: Field<'_>, out: &mut [f64]) -> Result<(), PlaceError> {
-        let body = self.body();
-        let cells: Vec<u32> = match on {
-            None => (0..body.mesh.cell_count() as u32).collect(),
-            Some(name) => match self.group(on)?.cells.clone() {
-                list if list.is_empty() => {
-                    return Err(self.unsuitable(format!("`{name}` has no cells for heat per volume")));
-                }
-                list => list,
-            },
-        };
-        for cell in cells.into_iter().map(|c| c as usize) {
-            let table = self.table(cell);
-            for (q, (_, w)) in table.points.iter().enumerate() {
-                let (x, jacobian) = body.mesh.jacobian(cell, &table.map[q]);
-                let heat = source(&spatial(&x)) * w * determinant(&jacobian) * self.bodies.measure(&x);
-                for ((f, sign), v) in body.dofs.cell(cell).zip(&table.basis[q].value) {
-                    out[f as usize] += sign * v * heat;
-                }
-            }
-        }
-        Ok(())
+        self.in_cells(on, "heat per volume", &mut |x, volume, list| {
+            let heat = source(x) * volume;
+            list.for_each(|(f, v)| out[f as usize] += v * heat);
+        })
     }
 
     fn add_flux(&self, on: Option<&str>, flux: Field<'_>, out: &mut [f64]) -> Result<(), PlaceError> {

@@ -83,22 +83,35 @@ impl<const D: usize> SolidBody<D> {
         force: &dyn Fn(&Point<3>) -> Vector<3>,
         out: &mut Contribution,
     ) -> Result<(), PlaceError> {
+        self.in_cells(on, "a force per volume", &mut |x, volume, list| {
+            let value = force(x) * volume;
+            list.for_each(|(f, v)| (0..D).for_each(|k| out.forces[D * f as usize + k] -= v * value[k]));
+        })
+    }
+
+    /// Visits quadrature points of the cells of a place at rest, with what they stand for and the functions there with their
+    /// values; `what` asks for cells.
+    pub(super) fn in_cells(
+        &self,
+        on: Option<&str>,
+        what: &str,
+        visit: &mut dyn FnMut(&Point<3>, f64, &mut dyn Iterator<Item = (u32, f64)>),
+    ) -> Result<(), PlaceError> {
         let body = self.body();
         let cells: Vec<u32> = match on {
             None => (0..body.mesh.cell_count() as u32).collect(),
-            Some(name) => self.group(on).and_then(|g| {
-                let none = || self.unsuitable(format!("`{name}` has no cells for a force per volume"));
-                if g.cells.is_empty() { Err(none()) } else { Ok(g.cells.clone()) }
-            })?,
+            Some(name) => match &self.group(on)?.cells {
+                list if list.is_empty() => return Err(self.unsuitable(format!("`{name}` has no cells for {what}"))),
+                list => list.clone(),
+            },
         };
         for cell in cells.into_iter().map(|c| c as usize) {
             let table = self.table(cell);
             for (q, (_, w)) in table.points.iter().enumerate() {
                 let (x, jacobian) = body.mesh.jacobian(cell, &table.map[q]);
-                let value = force(&spatial(&x)) * (w * determinant(&jacobian) * self.bodies.measure(&x));
-                for ((f, sign), v) in body.dofs.cell(cell).zip(&table.basis[q].value) {
-                    (0..D).for_each(|i| out.forces[D * f as usize + i] -= sign * v * value[i]);
-                }
+                let volume = w * determinant(&jacobian) * self.bodies.measure(&x);
+                let functions = body.dofs.cell(cell).zip(&table.basis[q].value);
+                visit(&spatial(&x), volume, &mut functions.map(|((f, sign), v)| (f, sign * v)));
             }
         }
         Ok(())

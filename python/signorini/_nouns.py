@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = 'c7ee8889b5f2538e'
+SCHEMA = '737d69e74979364f'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -575,7 +575,7 @@ class Contact(Noun):
 
     adhesion: Adhesion of the surfaces: they attract each other as they close and as they part.
     all: Whether contact is possible between all bodies.
-    between: The two bodies, slave first. Contact is tested at points of the slave.
+    between: The two bodies. Contact forces are told as they act on the first.
     cohesion: Cohesion of solids: what touches at the start is bonded until the bond breaks.
     compliance: Rough surfaces of solids: the pressure as a function of the gap. If left out, bodies do not
         penetrate each other.
@@ -584,6 +584,9 @@ class Contact(Noun):
     method: Contact discretisation. If left out, it is chosen by the kinds of the bodies.
     restitution: Coefficient of restitution of rigid bodies that strike, from 0 to 1; 0 if left out.
     self_contact: The rope, beam or solid that is in contact with itself.
+    slave: The body of `between` whose points are tested, and whose faces carry the pressure. If left out, the
+        program chooses: the side with the smaller modulus over the distance of its nodes; the first body where it
+        wears, is tied, or carries an axis of friction.
     sliding: Sliding of solids on each other and on rigid bodies; any distance if left out.
     tie_distance: Distance at the start up to which surfaces are tied, a length; a tenth of the size of a face of
         the slave if left out.
@@ -593,7 +596,7 @@ class Contact(Noun):
     """
 
     _key = None
-    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'heat': ('heat', 'ContactHeat'), 'method': ('method', '<Method>'), 'restitution': ('restitution', 'float'), 'self_contact': ('self_contact', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
+    _types = {'adhesion': ('adhesion', 'Adhesion'), 'all': ('all', 'bool'), 'between': ('between', '[str]'), 'cohesion': ('cohesion', 'Cohesion'), 'compliance': ('compliance', '<Compliance>'), 'friction': ('friction', '<Friction>'), 'heat': ('heat', 'ContactHeat'), 'method': ('method', '<Method>'), 'restitution': ('restitution', 'float'), 'self_contact': ('self_contact', 'str'), 'slave': ('slave', 'str'), 'sliding': ('sliding', 'str'), 'tie_distance': ('tie_distance', 'Value'), 'tied': ('tied', 'bool'), 'wear': ('wear', 'Value')}
 
     def __init__(
         self,
@@ -608,6 +611,7 @@ class Contact(Noun):
         method: Optional[LevelSetMethod | ActiveSetMethod | Mortar | GaussPoint | Node | CurveMethod | CellSurface | DiscMethod | Mapping[str, Any] | str] = None,
         restitution: Optional[float] = None,
         self_contact: Optional[str] = None,
+        slave: Optional[str] = None,
         sliding: Optional[str] = None,
         tie_distance: Optional[Value] = None,
         tied: Optional[bool] = None,
@@ -623,6 +627,7 @@ class Contact(Noun):
         self.method = method
         self.restitution = restitution
         self.self_contact = self_contact
+        self.slave = slave
         self.sliding = sliding
         self.tie_distance = tie_distance
         self.tied = tied

@@ -207,9 +207,11 @@ impl<const D: usize> CellSolid<D> {
     fn displacement(&self, cell: usize, t: &Tabulation<D>, u: &[f64]) -> (Vector<D>, Matrix<D>) {
         let (mut value, mut gradient) = (Vector::<D>::zeros(), Matrix::<D>::zeros());
         for (f, (v, slope)) in self.body.cells()[cell].functions.iter().zip(t.value.iter().zip(&t.gradient)) {
-            let c = Vector::<D>::from_fn(|k, _| u[D * *f as usize + k]);
-            value += c * *v;
-            gradient += c * slope.transpose();
+            for k in 0..D {
+                let c = u[D * *f as usize + k];
+                value[k] += c * v;
+                (0..D).for_each(|j| gradient[(k, j)] += c * slope[j]);
+            }
         }
         (value, gradient)
     }
@@ -526,6 +528,13 @@ impl<const D: usize> ContactSides for CellSolid<D> {
             }
         }
         Some(out)
+    }
+
+    fn position(&self, state: &BodyState, site: &mechanics::Site) -> Option<Point<3>> {
+        let point = &self.points[site.patch as usize];
+        let mut t = Tabulation::default();
+        self.body.functions_at(point.cell, &point.x, &mut t);
+        Some(spatial(&(point.x + self.displacement(point.cell, &t, &state.configuration).0)))
     }
 
     fn position_and_traction(&self, state: &BodyState, site: &mechanics::Site) -> Option<(Point<3>, f64)> {

@@ -378,6 +378,12 @@ pub trait ContactSides {
         None
     }
 
+    /// Where a site of a surface is now, without what moves it. None where that costs as much as [`placed`](Body::placed), where
+    /// sites may rest or have radii.
+    fn position(&self, _state: &BodyState, _site: &Site) -> Option<Point<3>> {
+        None
+    }
+
     /// Where a site is now, and the size of its [`traction`](ContactSides::traction), without what changes them: enough to see
     /// that a site of zero radius is far from what it may touch. None where that costs as much as [`placed`](Body::placed).
     fn position_and_traction(&self, _state: &BodyState, _site: &Site) -> Option<(Point<3>, f64)> {

@@ -63,6 +63,8 @@ pub struct Contact {
     pub(crate) memory: Vec<SiteMemory>,
     /// The rotation vectors of slave and master at the last state, of rigid bodies.
     pub(crate) turned: [Vector<3>; 2],
+    /// Both sides in the state from which the increment starts, where surfaces rub.
+    departed: Option<[BodyState; 2]>,
 }
 
 /// What a site remembers of the last state besides its traction.
@@ -149,6 +151,7 @@ impl Contact {
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
             turned: [Vector::<3>::zeros(); 2],
+            departed: None,
         })
     }
 
@@ -244,12 +247,37 @@ impl Contact {
             friction,
             axis: self.axis,
         };
-        let first = encounter.measure(Order::First).map(|pair| self.with_stress(k, sides, pair));
+        let arrives = friction && stuck.is_none() && placed.outward.is_some() && met.is_surface();
+        let measured = |order| {
+            let mut pair = encounter.measure(order)?;
+            if arrives {
+                self.count_from_departure(sides, &mut pair);
+            }
+            Ok(self.with_stress(k, sides, pair))
+        };
+        let first = measured(Order::First);
         if !first.as_ref().is_ok_and(wanted) {
             return (placed, Some(first));
         }
-        let second = encounter.measure(Order::Second).map(|pair| self.with_stress(k, sides, pair));
+        let second = measured(Order::Second);
         (placed, Some(second))
+    }
+
+    /// The slip of a site of a surface that met nothing in the last state, such as one that the end of the master has slid over since:
+    /// how far what meets now has come along each other, by the motion of both sides.
+    fn count_from_departure(&self, sides: &Sides<'_>, pair: &mut Pair) {
+        let Some(departed) = &self.departed else { return };
+        let sides = [sides.slave, sides.master].into_iter().zip(sides.first).zip(departed);
+        let mut came = Vector::<3>::zeros();
+        for (((body, state), first), before) in sides.take(if self.is_within() { 1 } else { 2 }) {
+            let own = first..first + body.unknowns() as u32;
+            for (unknown, slip) in pair.unknowns.iter().zip(&pair.slip).filter(|(unknown, _)| own.contains(unknown)) {
+                let place = (unknown - first) as usize;
+                came += slip * (state.configuration[place] - before.configuration[place]);
+            }
+        }
+        pair.elastic = came;
+        pair.d_elastic.clone_from(&pair.slip);
     }
 
     /// The gap beyond which a site is open whatever it meets.

@@ -8,6 +8,7 @@ use crate::dynamics::Moved;
 use crate::equilibrium::{Problem, Way};
 use crate::heat::HeatResult;
 use crate::increment_error::IncrementError;
+use crate::interaction::Bodies;
 use crate::linear_solver::{Solved, Stiffness};
 use crate::points::Order;
 use crate::shown_surface::ShownSurface;
@@ -191,7 +192,12 @@ impl System {
         }
         start.multipliers = self.contacts.iter().flat_map(|c| c.law().multipliers()).collect();
         start.predictions = self.contacts.iter().map(|c| c.prediction()).collect();
-        self.contacts.iter_mut().for_each(|c| c.begin_increment(time));
+        let (first, _) = self.numbering();
+        let at = Bodies { bodies: &self.bodies, states: &from.bodies, first: &first };
+        self.contacts.iter_mut().for_each(|c| {
+            c.begin_increment(time);
+            c.depart(at);
+        });
         Ok(start)
     }
 

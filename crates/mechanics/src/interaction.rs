@@ -162,6 +162,9 @@ pub trait Iterated {
     /// Begins an increment to a time.
     fn begin(&mut self, _time: f64) {}
 
+    /// Takes the state that the increment starts from.
+    fn depart(&mut self, _from: Bodies<'_>) {}
+
     /// Leaves out what cannot move; `held` tells which unknowns are prescribed.
     fn leave_out_held(&mut self, _at: Bodies<'_>, _held: &[bool]) {}
 

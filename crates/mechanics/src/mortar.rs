@@ -12,7 +12,8 @@
 //! [`Contact`](crate::contact::Contact), with the same laws and enforcements. Integrals are over the reference area, so that
 //! dual functions of faces covered completely do not change; pieces and gaps are those of the current configuration
 //! (Puso & Laursen 2004; Popp, Gee & Wall 2009; Gitterle et al. 2010). Slip is how far points matched at the last state are
-//! apart along the surface: zero in a rigid motion of both sides, and without derivatives of projections.
+//! apart along the surface: zero in a rigid motion of both sides, and without derivatives of projections. Nodes that saw nothing
+//! then, such as those that the end of the master has slid over since, slip by how far apart the points were that match now.
 //!
 //! The tangent is exact but for the ends of the covered part: where the cuts within it move, the integrand does not jump.
 //! A surface in contact with itself has both roles, each face one of them (`mortar/within.rs`).
@@ -71,6 +72,8 @@ pub struct Mortar {
     matched: Vec<Matched>,
     /// The rotation vector of the master at the last state, if it is rigid.
     turned: Vector<3>,
+    /// Both sides in the state from which the increment starts, where slips count.
+    departed: Option<[BodyState; 2]>,
     /// None where sides slide as far as they slide.
     small: Option<SmallSliding>,
 }
@@ -146,6 +149,7 @@ impl Mortar {
             whole,
             matched: Vec::new(),
             turned: Vector::<3>::zeros(),
+            departed: None,
             small: None,
         })
     }
@@ -200,7 +204,7 @@ impl Mortar {
     /// What its law is given at a node.
     fn point(&self, k: usize, measure: &NodeMeasure, linearises: bool) -> PointMeasure {
         let slides = [1, 2].map(|slot| self.law.slots().contains(&slot));
-        // What was not matched at the last state has no slip, and no friction yet.
+        // What small sliding does not match has no slip, and no friction.
         let slides = self.sees(k, measure.matched).then_some(slides);
         PointMeasure {
             gap: measure.gap,

@@ -162,14 +162,20 @@ impl Contact {
         let count = self.sites().len() as f64;
         let mut out: Vec<TrackedPoint> = Vec::new();
         for site in self.sites() {
-            let [a, b] = [path.from, path.to].map(|end| body.placed(&end.states[slave], site));
-            if a.rests || b.rests {
-                continue;
-            }
-            let is_surface = a.outward.is_some();
+            let ends = [path.from, path.to].map(|end| &end.states[slave]);
+            let (from, to, radius, is_surface) = match ends.map(|end| body.position(end, site)) {
+                [Some(from), Some(to)] => (from, to, 0.0, true),
+                _ => {
+                    let [a, b] = ends.map(|end| body.placed(end, site));
+                    if a.rests || b.rests {
+                        continue;
+                    }
+                    (a.x, b.x, a.radius, a.outward.is_some())
+                }
+            };
             // What is smaller than the distance of sites is not seen at rest either.
             let spacing = body.size() / if is_surface { count.sqrt() } else { count };
-            let point = TrackedPoint { from: a.x, to: b.x, radius: a.radius, is_surface, spacing };
+            let point = TrackedPoint { from, to, radius, is_surface, spacing };
             if let (Some(before), true) = (out.last().copied(), is_curve) {
                 let [apart, then] = [point.from - before.from, point.to - before.to].map(|d| d.norm());
                 let more = (then / apart.max(spacing)).min(MOST_BETWEEN);

@@ -158,6 +158,16 @@ pub enum MasterProjection {
 }
 
 impl MasterProjection {
+    /// Whether it is a point of the surface of a body that deforms.
+    pub fn is_surface(&self) -> bool {
+        match self {
+            MasterProjection::Rigid(_) => false,
+            MasterProjection::Foot(foot) | MasterProjection::Cut(foot) | MasterProjection::Along(foot, _) => {
+                foot.outward.is_some()
+            }
+        }
+    }
+
     /// The gap of a point to what it meets, negative inside, and the normal outward from that; none on a curve itself.
     pub fn gap(&self, x: &Point<3>) -> Option<(f64, Vector<3>)> {
         match self {

@@ -472,6 +472,11 @@ impl Master for RigidMaster<'_> {
         (jet.gap.abs() <= reach).then(|| self.met(&own, &rotation, jet))
     }
 
+    fn gap(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<f64> {
+        let gap = self.body.shape.gap(&self.seen(x).0).gap;
+        (gap.abs() <= reach).then_some(gap)
+    }
+
     fn places(&self, x: &Point<3>) -> Vec<MasterProjection> {
         let (own, rotation) = self.seen(x);
         let around = self.body.shape.around(&own);

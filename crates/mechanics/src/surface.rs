@@ -43,6 +43,32 @@ pub trait Surface: Sync {
 }
 
 impl dyn Surface + '_ {
+    pub fn face_count(&self) -> usize {
+        match self.faces().0 {
+            Faces::Plane(faces) => faces.face_count(),
+            Faces::Space(faces) => faces.face_count(),
+        }
+    }
+
+    /// The vertices of a face at rest.
+    pub fn vertices_at_rest(&self, face: usize) -> Vec<Point<3>> {
+        match self.faces().0 {
+            Faces::Plane(faces) => vertices(faces, face),
+            Faces::Space(faces) => vertices(faces, face),
+        }
+    }
+
+    /// The mean length of the sides of a face at rest.
+    pub fn size(&self, face: usize) -> f64 {
+        let at = self.vertices_at_rest(face);
+        let sides = match self.faces().0 {
+            Faces::Plane(faces) => faces.shape(face),
+            Faces::Space(faces) => faces.shape(face),
+        }
+        .edges();
+        sides.iter().map(|&[a, b]| (at[b] - at[a]).norm()).sum::<f64>() / sides.len() as f64
+    }
+
     /// Axes along which unknowns move a point.
     pub(crate) fn dimension(&self) -> usize {
         match self.faces().0 {
@@ -71,6 +97,11 @@ impl dyn Surface + '_ {
             (Faces::Space(faces), u) => point(faces, u, face, s),
         }
     }
+}
+
+fn vertices<const D: usize>(faces: &dyn ContactSurface<D>, face: usize) -> Vec<Point<3>> {
+    let spatial = |x: Point<D>| Point::<3>::from_fn(|k, _| if k < D { x[k] } else { 0.0 });
+    faces.shape(face).vertices().iter().map(|s| spatial(faces.at(face, s).x)).collect()
 }
 
 fn point<const D: usize>(faces: &dyn ContactSurface<D>, u: &[f64], face: usize, s: &Local) -> SurfacePoint {

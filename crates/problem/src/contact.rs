@@ -9,8 +9,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// The two bodies, slave first. Contact is tested at points of the slave.
+    /// The two bodies. Contact forces are told as they act on the first.
     pub between: Option<List<String>>,
+    /// The body of `between` whose points are tested, and whose faces carry the pressure. If left out, the program chooses: the
+    /// side with the smaller modulus over the distance of its nodes; the first body where it wears, is tied, or carries an axis
+    /// of friction.
+    pub slave: Option<String>,
     /// The rope, beam or solid that is in contact with itself.
     pub self_contact: Option<String>,
     /// Whether contact is possible between all bodies.

@@ -136,6 +136,12 @@ impl Iterated for Contact {
         self.partners = Partners::new();
     }
 
+    fn depart(&mut self, from: Bodies<'_>) {
+        let is_rigid = |part: &Part| from.bodies[part.body].is_rigid();
+        let rubs = self.law.is_tangential() && !is_rigid(&self.slave) && !is_rigid(&self.master);
+        self.departed = rubs.then(|| [&self.slave, &self.master].map(|part| from.side(part).1.clone()));
+    }
+
     fn give_way(&mut self, force_per_gap: Option<f64>) -> bool {
         self.law.restore();
         if let Some(force_per_gap) = force_per_gap {

@@ -183,6 +183,12 @@ impl Mortar {
                 for faces in matched.chunks(AT_ONCE).filter(|_| wanted == Wanted::Tangent) {
                     add(faces.par_iter().map(|list| sides.slips(carried, list, false)).collect());
                 }
+                // How the points that match change is how the points move along each other.
+                let arrived: Vec<Matched> = measured.arrived.iter().map(|(point, _)| point.clone()).collect();
+                let arrived: Vec<&[Matched]> = arrived.chunk_by(|a, b| a.face == b.face).collect();
+                for faces in arrived.chunks(AT_ONCE).filter(|_| wanted == Wanted::Tangent) {
+                    add(faces.par_iter().map(|list| sides.slips(carried, list, true)).collect());
+                }
             }
             Facing::OnRigid(sides) => {
                 let faces: Vec<_> = measured.cover.points.iter().zip(&measured.pairs).collect();
@@ -329,6 +335,11 @@ impl Interaction for Mortar {
 impl Iterated for Mortar {
     fn begin(&mut self, _: f64) {
         self.small.iter_mut().for_each(SmallSliding::forget);
+    }
+
+    fn depart(&mut self, from: Bodies<'_>) {
+        let counts = self.law.is_tangential() && self.small.is_none();
+        self.departed = counts.then(|| [&self.slave, &self.master].map(|part| from.side(part).1.clone()));
     }
 
     fn leave_out_held(&mut self, at: Bodies<'_>, held: &[bool]) {

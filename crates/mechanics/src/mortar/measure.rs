@@ -4,11 +4,12 @@ use super::Mortar;
 use super::across::Surfaces;
 use super::axes::Axes;
 use super::cover::{CoveredPoint, FacingPart};
-use super::measured::{Apart, Measured, MetPoint, NodeMeasure};
+use super::measured::{Apart, Matched, Measured, MetPoint, NodeMeasure};
 use super::rigid::OnRigid;
-use crate::body::PlaceError;
+use crate::body::{Body, PlaceError};
 use crate::interaction::Bodies;
 use crate::pair::Pair;
+use crate::part::Part;
 use crate::points::{Master, MaterialPoint};
 use crate::surface::{Local, Surface};
 use rayon::prelude::*;
@@ -23,6 +24,7 @@ pub(super) struct Sides<'a> {
     /// The rotation vector of a rigid master at the last state.
     since: Vector<3>,
     friction: bool,
+    bodies: [&'a dyn Body; 2],
 }
 
 /// What the slave side meets.
@@ -43,6 +45,7 @@ impl<'a> Sides<'a> {
     pub fn new(contact: &Mortar, at: Bodies<'a>) -> Result<Self, PlaceError> {
         let (slave, state) = at.side(&contact.slave);
         let (master, other) = at.side(&contact.master);
+        let bodies = [slave, master];
         let slave_surface = slave.surface(contact.slave.group.as_deref(), state);
         let slave_surface = slave_surface.ok_or_else(|| super::no_surface(slave, &contact.slave))?;
         let group = contact.master.group.as_deref();
@@ -52,7 +55,7 @@ impl<'a> Sides<'a> {
         };
         let first = [at.first[contact.slave.body], at.first[contact.master.body]];
         let friction = contact.law.is_tangential();
-        Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction })
+        Ok(Sides { slave: slave_surface, master, first, since: contact.turned, friction, bodies })
     }
 
     /// The cosine between the normals of both sides, as the mean about each node.
@@ -103,7 +106,8 @@ impl<'a> Sides<'a> {
                 };
                 let met = cover.points.iter().map(|list| list.iter().map(of).collect()).collect();
                 let apart = matched.par_iter().map(|m| Some(surfaces.apart(m))).collect();
-                Measured { cover, met, apart, pairs: Vec::new(), matched: Vec::new(), lost: 0 }
+                let arrived = self.arrived(contact, &cover);
+                Measured { cover, met, apart, arrived, pairs: Vec::new(), matched: Vec::new(), lost: 0 }
             }
             Facing::OnRigid(sides) => {
                 let (pairs, lost) = sides.pairs(&cover);
@@ -114,9 +118,43 @@ impl<'a> Sides<'a> {
                 let of =
                     |pair: &Option<Pair>| pair.as_ref().map(|pair| Apart { normal: pair.normal, vector: pair.elastic });
                 let apart = matched.iter().map(of).collect();
-                Measured { cover, met, apart, pairs, matched, lost }
+                Measured { cover, met, apart, arrived: Vec::new(), pairs, matched, lost }
             }
         }
+    }
+
+    /// The covered points of nodes that the last state did not match, such as those that the end of the master has slid over since:
+    /// how far the material points that face each other now have come along each other.
+    fn arrived(&self, contact: &Mortar, cover: &FacingPart) -> Vec<(Matched, Apart)> {
+        let Some(departed) = contact.departed.as_ref().filter(|_| self.friction && contact.small.is_none()) else {
+            return Vec::new();
+        };
+        let sum = |all: &mut dyn Iterator<Item = &(u32, f64)>| {
+            let mut out = vec![0.0; contact.whole.len()];
+            all.for_each(|(node, share)| out[*node as usize] += share);
+            out
+        };
+        let points = || cover.points.iter().flatten();
+        let now = sum(&mut points().filter(|p| p.master.is_some()).flat_map(|p| &p.shares));
+        let before = sum(&mut contact.matched.iter().flat_map(|m| &m.shares));
+        let is_new: Vec<bool> =
+            (0..now.len()).map(|k| contact.sees(k, now[k]) && !contact.sees(k, before[k])).collect();
+        if !is_new.contains(&true) {
+            return Vec::new();
+        }
+        let surface = |k: usize, part: &Part| self.bodies[k].surface(part.group.as_deref(), &departed[k]);
+        let (Some(slave), Some(master)) = (surface(0, &contact.slave), surface(1, &contact.master)) else {
+            return Vec::new();
+        };
+        let of = |point: &CoveredPoint| {
+            let shares: Vec<_> = point.shares.iter().filter(|(node, _)| is_new[*node as usize]).copied().collect();
+            let met = point.master.filter(|_| !shares.is_empty())?;
+            let apart = slave.point(point.face, &point.s).x - master.point(met.face, &met.s).x;
+            let on = MaterialPoint { patch: met.face as u32, xi: met.s };
+            let came = Apart { normal: -slave.normal(point.face, &point.s).normalize(), vector: -apart };
+            Some((Matched { face: point.face, s: point.s, on, shares }, came))
+        };
+        points().filter_map(of).collect()
     }
 
     /// The rotation vector of a rigid master.
@@ -140,8 +178,8 @@ impl Mortar {
                 own.normal += met.normal * *share;
             }
         }
-        for (matched, apart) in self.matched.iter().zip(&measured.apart) {
-            let Some(apart) = apart else { continue };
+        let matched = self.matched.iter().zip(&measured.apart).filter_map(|(m, apart)| Some((m, apart.as_ref()?)));
+        for (matched, apart) in matched.chain(measured.arrived.iter().map(|(m, came)| (m, came))) {
             for (node, share) in &matched.shares {
                 let Some(axes) = self.axes(*node, &apart.normal) else { continue };
                 let own = &mut out[*node as usize];

@@ -40,6 +40,8 @@ pub struct Measured {
     pub met: Vec<Vec<Option<MetPoint>>>,
     /// How far each matched point is apart; none without friction.
     pub apart: Vec<Option<Apart>>,
+    /// The points of nodes that the last state did not match, with how far they came since; none without friction.
+    pub arrived: Vec<(Matched, Apart)>,
     /// The pairs with a rigid master, of points and of matched points; else none.
     pub pairs: Vec<Vec<Option<Pair>>>,
     pub matched: Vec<Option<Pair>>,

@@ -26,9 +26,8 @@ use crate::contact_law::ContactLaw;
 use crate::enforcement::Enforcement;
 use crate::part::Part;
 use crate::points::{Master, MasterProjection, MaterialPoint, Sampling, Site};
-use crate::surface::{Faces, Local};
+use crate::surface::{Local, Surface};
 use joint::{Joint, MasterAt, MasterPoint, SlaveAt};
-use signorini_contact::ContactSurface;
 use signorini_contact::law::Tied;
 use signorini_geometry::{Point, Vector};
 use std::sync::OnceLock;
@@ -221,7 +220,7 @@ impl<'a> Start<'a> {
         let (part, body, state) = self.slave;
         let group = part.group.as_deref();
         let surface = body.surface(group, state);
-        let size = surface.as_ref().map(|surface| face_size(surface.faces().0));
+        let size = surface.as_ref().map(|surface| mean_size(surface.as_ref()));
         if let Some(sampling) = sampling {
             let sites = body.sites(group, sampling)?;
             let stiffness = sites.iter().map(|s| body.site_stiffness(s) / s.weight).collect();
@@ -365,21 +364,7 @@ impl TieFindings {
 }
 
 /// The mean size of the faces of a surface.
-fn face_size(faces: Faces<'_>) -> f64 {
-    match faces {
-        Faces::Plane(faces) => mean_size(faces),
-        Faces::Space(faces) => mean_size(faces),
-    }
-}
-
-fn mean_size<const D: usize>(faces: &dyn ContactSurface<D>) -> f64 {
-    let size = |face: usize| {
-        let shape = faces.shape(face);
-        let corners: Vec<Point<D>> = shape.vertices().iter().map(|s| faces.at(face, s).x).collect();
-        let edge = |&[a, b]: &[usize; 2]| (corners[b] - corners[a]).norm();
-        let edges = shape.edges();
-        if D == 2 { (corners[1] - corners[0]).norm() } else { edges.iter().map(edge).sum::<f64>() / edges.len() as f64 }
-    };
-    let count = faces.face_count();
-    (0..count).map(size).sum::<f64>() / count.max(1) as f64
+fn mean_size(surface: &dyn Surface) -> f64 {
+    let count = surface.face_count();
+    (0..count).map(|face| surface.size(face)).sum::<f64>() / count.max(1) as f64
 }

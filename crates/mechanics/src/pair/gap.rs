@@ -3,9 +3,9 @@
 use super::measures::{Column, NoPair, Pair, PairGeometry, axis};
 use crate::points::{Foot, Function, Order, RigidFoot};
 use nalgebra::{SMatrix, SVector};
-use signorini_geometry::Vector;
 use signorini_geometry::measures::{Measures, PartnerJet, Variation};
 use signorini_geometry::shape::CurveJet;
+use signorini_geometry::{Matrix, Vector};
 
 /// A slave site and the foot of its distance on a point, a curve or a surface.
 pub(super) struct AtFoot<'a, const N: usize> {
@@ -142,6 +142,13 @@ impl<'a> AtRigid<'a> {
         Ok(AtRigid { encounter, foot, columns, arm })
     }
 
+    /// Whether nothing curves or turns, so that second variations are those of the position of the slave alone.
+    pub fn is_plain(&self) -> bool {
+        let zero = Vector::<3>::zeros();
+        let is_still = |c: &Column| c.turn == zero && c.spin == [zero; 2];
+        self.foot.jet.hessian == Matrix::<3>::zeros() && self.columns.iter().all(is_still)
+    }
+
     /// Second derivatives of the position seen from the body.
     pub fn bend(&self, k: usize, l: usize) -> Vector<3> {
         let arm = self.arm;
@@ -167,7 +174,8 @@ impl<'a> AtRigid<'a> {
         };
         if order == Order::Second {
             pair.d_opening = vec![0.0; n * n];
-            for k in 0..n {
+            let is_plain = self.is_plain();
+            for k in (0..n).filter(|_| !is_plain) {
                 let curved = hessian * columns[k].d;
                 for l in 0..n {
                     pair.d_opening[k * n + l] = curved.dot(&columns[l].d) + normal.dot(&self.bend(k, l));

@@ -227,10 +227,11 @@ impl AtRigid<'_> {
         pair.slip = (columns.iter())
             .map(|c| across * c.d - hessian * c.d * distance - relative_spin(c).cross(&normal) * lever)
             .collect();
-        if order == Order::Second {
+        let is_plain = self.is_plain();
+        if order == Order::Second && !(is_plain && slave.bends.is_empty()) {
             let third = curvature_slopes(foot, distance, slave.x);
             let mut parts: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; n * n]);
-            for k in 0..n {
+            for k in (0..n).filter(|_| !is_plain) {
                 let curved_k = hessian * columns[k].d;
                 for l in 0..n {
                     let curved_l = hessian * columns[l].d;

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 /// A contact at the end of an increment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ContactReport {
+    /// The body whose points are tested, by choice of the case or of the program; null with membranes.
+    #[serde(default)]
+    pub slave: Option<String>,
     /// Contact force on the first body of the contact. For axisymmetric membranes it is that of the whole disc.
     pub force: [f64; 3],
     /// Contact moment on the first body about `moments_about`.

@@ -52,7 +52,7 @@ fn each_mistake_is_told_at_its_place() {
             "[\"block:bottom\"]",
             "bodies of the contact are missing",
             "[contacts.touch]",
-            "slave first",
+            "self_contact",
         ),
         ("incline", "mu = [0.3, 0.5]", "mu = -0.3", "must not be negative", "-0.3", "leave `friction` out"),
         ("incline", "mu = [0.3, 0.5]", "mu = [0.3, nan]", "not a finite number", "nan", ""),

@@ -194,3 +194,20 @@ fn a_brake_drum_rubs_by_the_angle_times_the_radius() {
     // This one is cut.
     rubbed(cells, "", 1.5, 1);
 }
+
+/// A block is pushed up a wedge, farther in each increment than a cell is long: `W tan(α + atan μ)`, whichever side is tested. On the
+/// wedge friction has to reach points that the end of the block has slid over since the increment began.
+#[test]
+fn friction_reaches_what_the_end_of_a_body_slides_over() {
+    let exact = (0.1f64.atan() + 0.3f64.atan()).tan();
+    for slave in ["block", "wedge"] {
+        for method in ["mortar = {}", "node = {}", "gauss_point = {}"] {
+            let case =
+                example("wedge").replace("sliding = \"finite\" ", &format!("slave = \"{slave}\"\nmethod.{method} "));
+            let case = case.replace("2.4*t", "0.6*t").replace("increments = 8", "increments = 2");
+            let found = summary(&case, &set(&[]));
+            let push = number(&last_step(&found)["support_forces"]["push"][0]);
+            assert!((push / exact - 1.0).abs() < 1e-5, "{slave}, {method}: {push} for {exact}");
+        }
+    }
+}

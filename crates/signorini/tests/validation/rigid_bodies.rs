@@ -10,14 +10,17 @@ fn close(value: &Value, expected: f64, tolerance: f64) {
 /// A disc that sticks to a floor turns as far as it rolls, whatever the increment.
 #[test]
 fn a_disc_rolls_without_slip() {
-    for distance in [0.9, 5.0] {
+    // A cylinder is a disc in the plane.
+    for (distance, shape) in
+        [(0.9, "sphere = { center = [0, 1], radius = 1 }"), (5.0, "cylinder = { point = [0, 1], radius = 1 }")]
+    {
         let case = format!(
             r#"
 space = "plane_strain"
 [bodies.floor.rigid]
 shape.plane = {{ point = [0, 0], normal = [0, 1] }}
 [bodies.disc.rigid]
-shape.sphere = {{ center = [0, 1], radius = 1 }}
+shape.{shape}
 motion.free = {{}}
 [loads.weight]
 on = "disc"
@@ -37,6 +40,7 @@ to = 1
         close(&step["free_bodies"]["disc"]["rotation"][2], -distance, 1e-9);
         close(&step["contacts"]["foot"]["force"][1], 1.0, 1e-9);
         close(&step["contacts"]["foot"]["max_slip"], 0.0, 1e-9);
+        assert_eq!(found["answer"]["verdict"], "right_within", "{}", found["answer"]["text"]);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Contacts of a system: who may touch whom, tested where, kept how, with which friction.
 
+use super::sides::Sides;
 use super::{ContactInfo, Kind, Numbers};
 use crate::plan::planner::Planner;
 use crate::problem::units::{LENGTH, NONE};
@@ -32,6 +33,11 @@ impl Planner<'_> {
                         .help(format!("for self-contact:  self_contact = \"{}\"", pair[0].trim())));
                 }
                 (Some(pair), None, None) if pair.len() == 2 => vec![(name.clone(), [&pair[0], &pair[1]])],
+                (None, _, _) if key.slave.is_some() => {
+                    return Err(problem
+                        .error(key.slave.as_ref().expect("it is stated"), "`slave` requires `between`")
+                        .help("leave `slave` out"));
+                }
                 (None, Some(body), None) => vec![(name.clone(), [body, body])],
                 (None, None, Some(true)) => {
                     let names: Vec<&String> = numbers.keys().collect();
@@ -50,14 +56,15 @@ impl Planner<'_> {
                     tested.into_iter().map(|pair| (format!("{name}_{}_{}", pair[0], pair[1]), pair)).collect()
                 }
                 _ => {
-                    return Err(problem.error(key, "the bodies of the contact are missing").help(
-                        "between = [\"BODY\", \"BODY\"], slave first; or  self_contact = \"BODY\"; or  all = true",
-                    ));
+                    return Err(problem
+                        .error(key, "the bodies of the contact are missing")
+                        .help("between = [\"BODY\", \"BODY\"]; or  self_contact = \"BODY\"; or  all = true"));
                 }
             };
             for (name, pair) in pairs {
-                let (contact, tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
+                let (contact, mut tested) = self.system_contact(&name, key, pair, (numbers, system, kinds))?;
                 self.check_sliding(key, &tested, contact.parts(), (system, kinds))?;
+                tested.swapped = contact.bodies()[0] != self.part(pair[0], numbers)?.body;
                 out.push(contact);
                 told.push(tested);
             }
@@ -73,36 +80,9 @@ impl Planner<'_> {
         (numbers, system, kinds): (&Numbers, &mut System, &[Kind]),
     ) -> Result<(Box<dyn Interaction>, ContactInfo), CaseError> {
         let problem = self.problem;
-        let mut parts: [Part; 2] = [self.part(on[0], numbers)?, self.part(on[1], numbers)?];
-        let mut on = on;
-        // A body of cells touches others with the sides of its grid too.
-        for part in parts.iter_mut().filter(|_| on[0] != on[1]) {
-            if matches!(kinds[part.body], Kind::Cells) && part.group.is_none() {
-                part.group = Some(super::cells::SURFACE.to_string());
-            }
-        }
-        for (part, on) in parts.iter().zip(on) {
-            if part.group.is_some() {
-                self.check_group(part, on, system)?;
-            }
-        }
+        let Sides { parts, swapped } = self.sides(key, on, (numbers, system, kinds))?;
+        let on = if swapped { [on[1], on[0]] } else { on };
         let body = |part: &Part| system.bodies[part.body].as_ref();
-        let points = |part: &Part| body(part).sites(part.group.as_deref(), Sampling::Nodes);
-        // A body without points of its own is touched by the other; and the faces of a body that deforms follow a rigid one
-        // better than points on it follow them. Cells also one that is free, unless its points are asked for. A curve passes
-        // between the points of a surface: its own are tested.
-        let is_edge = body(&parts[0]).curve(parts[0].group.as_deref()).is_some();
-        let follows = match (&kinds[parts[0].body], &kinds[parts[1].body]) {
-            (Kind::Solid | Kind::Cells, Kind::Curve { .. }) => !is_edge,
-            (Kind::Rigid { is_free, .. }, Kind::Cells) => !is_free || !matches!(key.method, Some(Method::Node(_))),
-            (Kind::Rigid { is_free, .. }, Kind::Solid) => !is_free,
-            _ => false,
-        };
-        let has_points = points(&parts[0]).is_ok() && !follows;
-        if !has_points && points(&parts[1]).is_ok() {
-            parts.swap(0, 1);
-            on.swap(0, 1);
-        }
         let [slave, master] = parts;
         if body(&slave).unknowns() == 0 && body(&master).unknowns() == 0 {
             return Err(

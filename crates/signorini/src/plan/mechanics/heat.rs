@@ -286,7 +286,7 @@ impl Planner<'_> {
     }
 
     /// The key of a contact of the system, also of one between all bodies.
-    fn contact_key(&self, name: &str) -> Option<&problem::Contact> {
+    pub(super) fn contact_key(&self, name: &str) -> Option<&problem::Contact> {
         let contacts = &self.problem.contacts;
         contacts.get(name).or_else(|| {
             let all = contacts.iter().filter(|(_, key)| key.all == Some(true));

@@ -8,10 +8,12 @@ mod curves;
 mod fields;
 mod heat;
 mod images;
+pub mod more_friction;
 mod mortar;
 mod motion;
 mod places;
 mod rigid;
+mod sides;
 mod solids;
 mod tie;
 mod winches;
@@ -65,7 +67,9 @@ pub struct ContactInfo {
     pub axis: AxisChoice,
     /// Whether its points are those of a curve, in order.
     pub along_a_curve: bool,
-    /// What the first body carries.
+    /// Whether the slave is the second of the bodies that the case names.
+    pub swapped: bool,
+    /// What the slave carries.
     pub carries: TractionKind,
     /// Whether sliding is small by choice: gaps and slips are linear in the displacements.
     pub slides_little: bool,
@@ -87,6 +91,7 @@ impl ContactInfo {
             method,
             axis,
             along_a_curve: false,
+            swapped: false,
             carries,
             slides_little: false,
             at_nodes: false,

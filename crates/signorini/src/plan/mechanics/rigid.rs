@@ -240,11 +240,14 @@ impl Planner<'_> {
         let outside = key.side != Some(Side::Inside);
         Ok(match &key.shape {
             Shape::Sphere(sphere) => {
-                let x = self.position(&sphere.center, LENGTH)?;
-                let radius = self.reader.positive(&sphere.radius, LENGTH)?;
-                let site = RigidSite { x, outward: None, radius, weight: 1.0 };
-                (if outside { vec![site] } else { Vec::new() }, 2.0 * radius)
+                of_ball(self.position(&sphere.center, LENGTH)?, self.reader.positive(&sphere.radius, LENGTH)?, outside)
             }
+            // A disc.
+            Shape::Cylinder(cylinder) if !matches!(self.space, Space::ThreeD | Space::Axisymmetric) => of_ball(
+                self.position(&cylinder.point, LENGTH)?,
+                self.reader.positive(&cylinder.radius, LENGTH)?,
+                outside,
+            ),
             Shape::Box(stated) => {
                 let body = match self.space {
                     Space::ThreeD => self.rigid_box::<3>(&key.shape, stated)?,
@@ -258,6 +261,12 @@ impl Planner<'_> {
             _ => (Vec::new(), (high - low).norm()),
         })
     }
+}
+
+/// The centre of a ball or disc.
+fn of_ball(x: Point<3>, radius: f64, outside: bool) -> (Vec<RigidSite>, f64) {
+    let site = RigidSite { x, outward: None, radius, weight: 1.0 };
+    (if outside { vec![site] } else { Vec::new() }, 2.0 * radius)
 }
 
 /// Corners, alike, with the direction from the middle.

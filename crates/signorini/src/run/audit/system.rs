@@ -133,7 +133,9 @@ fn setting(plan: &MechanicsPlan) -> Setting {
                 let placed: Vec<_> = placed.iter().map(|site| body.placed(state, site)).collect();
                 let balls = placed.iter().filter(|p| p.radius > 0.0).map(|p| (p.x, p.radius)).collect();
                 let mut points: Vec<Point<3>> = placed.iter().filter(|p| p.radius == 0.0).map(|p| p.x).collect();
-                let around = shape.bounds().or_else(|| Aabb::around(points.iter().copied()));
+                // Of a disc, too, which is a cylinder without ends.
+                let reach = placed.iter().flat_map(|p| [-p.radius, p.radius].map(|r| p.x + Vector::<3>::repeat(r)));
+                let around = shape.bounds().or_else(|| Aabb::around(reach));
                 let in_space = space == Space::ThreeD;
                 points.extend(around.iter().flat_map(|bounds| surface(shape.as_ref(), bounds, in_space)));
                 let size = around.map_or(0.0, |b| extent(&b, in_space));

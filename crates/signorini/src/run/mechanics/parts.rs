@@ -3,6 +3,7 @@
 
 use super::events::{self, Condition};
 use super::{Failure, MechanicsModel, recovered, tell_iteration};
+use crate::plan::mechanics::more_friction::laws_with_more_friction;
 use crate::problem::CaseError;
 use crate::report::{ContactEvent, Reason, Warning, WarningKind};
 use serde::{Deserialize, Serialize};
@@ -211,7 +212,8 @@ impl MechanicsModel {
                     };
                 }
                 Err(IncrementError::Interrupted) if is_given_up => {
-                    let remedy = self.at_the_limit().unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
+                    let slides = self.lacks_friction(target, progress);
+                    let remedy = slides.unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
                 Err(error) => {
@@ -221,8 +223,9 @@ impl MechanicsModel {
                     );
                     if !curable || part <= smallest || whole <= 0.0 {
                         let mut failure = self.failed(&error, total.residuals);
-                        if let (IncrementError::NotConverged { .. }, Some(slides)) = (&error, self.at_the_limit()) {
-                            failure.text += &format!("; {slides}");
+                        if let IncrementError::NotConverged { .. } = &error {
+                            let slides = self.lacks_friction(target, progress);
+                            failure.text += &slides.map_or(String::new(), |slides| format!("; {slides}"));
                         }
                         if reached > before {
                             failure.text += &format!(" (the last equilibrium is at t = {reached:.6})");
@@ -236,7 +239,7 @@ impl MechanicsModel {
         }
     }
 
-    /// Which contacts use all of their friction in the last state, in words: from there on what they hold slides.
+    /// Which contacts use all of their friction in the last state, in words.
     fn at_the_limit(&self) -> Option<String> {
         let system = &self.plan.system;
         let used = |k: usize| {
@@ -250,12 +253,43 @@ impl MechanicsModel {
             Some(format!("`{}` uses {:.1} % of its friction", system.contacts[k].name(), 100.0 * share.min(1.0)))
         };
         let list: Vec<String> = (0..system.contacts.len()).filter_map(of).collect();
-        (!list.is_empty()).then(|| {
+        (!list.is_empty())
+            .then(|| format!("; at t = {:.6}, the last equilibrium, {}", self.state.time, list.join(", ")))
+    }
+
+    /// What slides where there is an equilibrium only if friction is `MORE` times what the case states, in words. The state stays as
+    /// it is.
+    fn lacks_friction(&mut self, target: f64, progress: &mut dyn Progress) -> Option<String> {
+        let system = &mut self.plan.system;
+        if system.dynamics.is_some() || progress.interrupted() {
+            return None;
+        }
+        let names: Vec<String> = system.contacts.iter().map(|c| c.name().to_string()).collect();
+        let laws = laws_with_more_friction(&self.plan.head.problem, &names, MORE).ok()?;
+        if laws.iter().all(Option::is_none) {
+            return None;
+        }
+        let kept = system.histories();
+        let stated: Vec<_> = (system.contacts.iter_mut().zip(laws))
+            .map(|(contact, law)| Some(contact.law_mut().friction.replace(law?)))
+            .collect();
+        let mut iterations = 0;
+        let mut goes_on = |_: usize, _: f64| {
+            iterations += 1;
+            iterations < LEAST_ITERATIONS && !progress.interrupted()
+        };
+        let found = system.solve(&self.state, target, &mut goes_on);
+        for (contact, law) in system.contacts.iter_mut().zip(stated) {
+            if let Some(law) = law {
+                contact.law_mut().friction = law;
+            }
+        }
+        system.put_back(&kept);
+        found.is_ok().then(|| {
             format!(
-                "at t = {:.6}, the last equilibrium, {}: what no more friction holds slides, and there is no equilibrium \
-                 beyond; hold it, or use a smaller load",
-                self.state.time,
-                list.join(", ")
+                "with {MORE} times the friction there is an equilibrium at t = {target:.6}, so friction is too small, and what it \
+                 does not hold slides{}; hold it otherwise, or use more friction or a smaller load",
+                self.at_the_limit().unwrap_or_default()
             )
         })
     }
@@ -287,6 +321,8 @@ fn not_kept(error: f64, [from, to]: [f64; 2]) -> Warning {
     Warning::new(WarningKind::ErrorInTime, message).at_time(to)
 }
 
+/// How much more friction is tried where there seems to be no equilibrium: what rests with it, and not without it, slides.
+const MORE: f64 = 4.0;
 /// Part of the available friction of a contact, in the mean over its pressure, that is all of it but for the size of increments.
 const NEAR_LIMIT: f64 = 0.95;
 const NO_EQUILIBRIUM: &str = "there may be no equilibrium: check that every loaded body is supported; use more increments, or \

@@ -157,14 +157,15 @@ pub fn step_report(
         kinetic_energy: (!motion.is_empty()).then(|| motion.values().map(|m| m.kinetic_energy).sum()),
         damping_dissipation: result.moved.as_ref().map(|moved| moved.damped),
         motion,
-        heat: result.heat.as_ref().map(|heat| heat_report(system, heat)),
+        heat: result.heat.as_ref().map(|heat| heat_report(plan, heat)),
         max_strain: most_strained(plan, shown).map(|(_, strained)| strained.strain),
         ..StepReport::default()
     }
 }
 
 /// Temperatures and flows of heat.
-fn heat_report(system: &System, found: &HeatResult) -> HeatReport {
+fn heat_report(plan: &MechanicsPlan, found: &HeatResult) -> HeatReport {
+    let system = &plan.system;
     let Some(heat) = &system.heat else { return HeatReport::default() };
     let body = |k: usize| {
         let [min, max] = found.ranges[k]?;
@@ -174,8 +175,14 @@ fn heat_report(system: &System, found: &HeatResult) -> HeatReport {
     let contact = |k: usize| {
         heat.contacts[k]?;
         let (flow, contact) = (found.contacts[k], &system.contacts[k]);
-        let bodies = contact.bodies().map(|b| system.bodies[b].name().to_string());
-        let report = ContactHeatReport { conducted: flow.conducted, friction: flow.friction, bodies, into: flow.into };
+        let mut bodies = contact.bodies().map(|b| system.bodies[b].name().to_string());
+        let (mut conducted, mut into) = (flow.conducted, flow.into);
+        if plan.contacts[k].swapped {
+            bodies.reverse();
+            into.reverse();
+            conducted = -conducted;
+        }
+        let report = ContactHeatReport { conducted, friction: flow.friction, bodies, into };
         Some((contact.name().to_string(), report))
     };
     HeatReport {
@@ -280,7 +287,12 @@ fn contact_report(
     sites: &[SiteResult],
 ) -> ContactReport {
     let closed = || sites.iter().filter(|s| s.status != Status::Open);
-    let is_curve = matches!(plan.kinds[contact.bodies()[0]], Kind::Curve { .. });
+    let [slave, _] = contact.bodies();
+    let is_curve = matches!(plan.kinds[slave], Kind::Curve { .. });
+    // What acts on the first body that the case names.
+    let side = if tested.swapped { -1.0 } else { 1.0 };
+    // Without negative zeros.
+    let on_first = |force: Vector<3>| vector(&force.map(|f| side * f + 0.0));
     let component = |run: &Vec<&SiteResult>| {
         let area: f64 = run.iter().map(|s| s.contact_area()).sum();
         let force = resultant(run.iter().map(|s| s.force()));
@@ -288,7 +300,7 @@ fn contact_report(
         let part = |s: &SiteResult| if area > 0.0 { s.contact_area() } else { s.weight };
         let whole: f64 = run.iter().map(|s| part(s)).sum();
         let middle: Vector<3> = run.iter().map(|s| s.x * part(s)).sum::<Vector<3>>() / whole;
-        Component { area, force: vector(&force), centroid: vector(&middle), holes: None }
+        Component { area, force: on_first(force), centroid: vector(&middle), holes: None }
     };
     let zones = if is_curve { runs(sites) } else { zones(sites) };
     let components: Vec<Component> = zones.iter().map(component).collect();
@@ -299,9 +311,10 @@ fn contact_report(
     // The sum of nothing is a negative zero.
     let area = |status: Status| closed().filter(|s| s.status == status).map(|s| s.contact_area()).sum::<f64>() + 0.0;
     ContactReport {
-        force: vector(&resultant(closed().map(|s| s.force()))),
+        slave: Some(plan.system.bodies[slave].name().to_string()),
+        force: on_first(resultant(closed().map(|s| s.force()))),
         moment: (plan.space != Space::Axisymmetric)
-            .then(|| vector(&resultant(closed().map(|s| (s.acts_at() - plan.moments_about).cross(&s.force()))))),
+            .then(|| on_first(resultant(closed().map(|s| (s.acts_at() - plan.moments_about).cross(&s.force()))))),
         carries: tested.carries,
         area: area_of_contact,
         zones: components.len(),
@@ -317,7 +330,7 @@ fn contact_report(
         slip_area: rubs.then(|| area(Status::Slip)),
         max_slip: rubs.then(|| closed().map(|s| s.slip).fold(0.0, f64::max)),
         max_friction_utilisation: rubs.then(|| closed().map(|s| s.utilisation).fold(0.0, f64::max)),
-        friction_force: rubs.then(|| vector(&resultant(closed().map(|s| s.acting_friction() * s.weight)))),
+        friction_force: rubs.then(|| on_first(resultant(closed().map(|s| s.acting_friction() * s.weight)))),
         max_tension: holds.then(|| closed().map(|s| -s.pressure).fold(0.0, f64::max)),
         max_wear: wears.then(|| sites.iter().map(|s| s.worn).fold(0.0, f64::max)),
         worn_volume: wears.then(|| sites.iter().map(|s| s.worn * s.weight).sum()),

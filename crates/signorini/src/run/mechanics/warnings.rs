@@ -83,7 +83,7 @@ fn warn_of_oscillation(plan: &MechanicsPlan, result: &IncrementResult, shown: &S
         }
         let message = format!(
             "contact `{}`: the pressure oscillates from node to node of the slave `{}`, which is stiffer than the master `{}` or \
-             has smaller cells; name the softer body, or the one of larger cells, first in `between`",
+             has smaller cells; leave `slave` out, or use smaller cells in the master",
             contact.name(),
             slave.name(),
             master.name()

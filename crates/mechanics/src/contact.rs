@@ -219,7 +219,8 @@ impl Contact {
             return (placed, None);
         }
         let except = self.is_within().then_some(site);
-        if self.is_beyond(farthest, (&placed.x, placed.radius), master, except) {
+        // What a rigid body meets is found with its gap.
+        if !sides.master.0.is_rigid() && self.is_beyond(farthest, (&placed.x, placed.radius), master, except) {
             return (placed, None);
         }
         let met: Option<MasterProjection> = match &placed.averaged {

@@ -136,7 +136,7 @@ fn the_temperature_jumps_where_blocks_touch() {
                  [supports.low]\non = \"lower:bottom\"\nnormal = 0\ntemperature = 0\n\
                  [supports.left]\non = \"lower:left\"\nnormal = 0\n[supports.left_too]\non = \"upper:left\"\nnormal = 0\n\
                  [loads.press]\non = \"upper:top\"\npressure = 10\n[supports.hot]\non = \"upper:top\"\ntemperature = 100\n\
-                 [contacts.joint]\nbetween = [\"upper:bottom\", \"lower:top\"]\nmethod.{method}\nheat = {{ {conductance} }}\n"
+                 [contacts.joint]\nbetween = [\"upper:bottom\", \"lower:top\"]\nslave = \"upper\"\nmethod.{method}\nheat = {{ {conductance} }}\n"
             );
             let step = last(&case);
             let q = 100.0 / (1.0 / 5.0 + 1.0 / h + 2.0 / 20.0);

@@ -127,7 +127,7 @@ fn rigid_shapes_of_one_curvature_agree() {
     let case = |shape: &str, motion: &str| {
         format!(
             "space = \"plane_strain\"\n[bodies.block.solid]\n\
-             mesh.box = {{ min = [-1, 0], max = [1, 1], cells = [40, 10] }}\ndegree = 2\n\
+             mesh.box = {{ min = [-1, 0], max = [1, 1], cells = [20, 5] }}\ndegree = 2\n\
              material.linear_elastic = {{ youngs_modulus = 10, poissons_ratio = 0.3 }}\n\
              [bodies.bump.rigid]\n{shape}\n{motion}\n\
              [supports.top]\non = \"block:top\"\ndisplacement = [0, \"-0.02*t\"]\n\

@@ -170,7 +170,7 @@ impl Region<3> for FacetBody {
                 }
             }
             if on_material_side(&within, b, &normal) {
-                let points = fan(&within).flat_map(|part| triangle_points(&part, points_along(&part, b, degree)));
+                let points = fan(&within).flat_map(|part| triangle_points(&part, degree + 2));
                 boundary.extend(points.map(|(x, weight)| BoundaryPoint { x, weight, normal }));
             }
             for part in fan(&within).filter(|_| !lies_on_end) {
@@ -303,14 +303,6 @@ fn on_material_side(part: &[Point<3>], b: &Aabb<3>, normal: &Vector<3>) -> bool 
         let beyond = (on(b.max[k]) && normal[k] < 0.0) || (on(b.min[k]) && normal[k] > 0.0);
         !beyond
     })
-}
-
-/// Points along each side of a part of a facet in a cell: enough for functions of the degree, and as far apart on small parts as on
-/// one that crosses the cell, so that they are as many per area however fine the triangles are.
-fn points_along([p, q, r]: &[Point<3>; 3], cell: &Aabb<3>, degree: usize) -> usize {
-    let longest = [q - p, r - q, p - r].iter().map(|side| side.norm()).fold(0.0, f64::max);
-    let across = (degree + 2) as f64 * longest / cell.size().min();
-    (across.ceil() as usize).clamp(degree / 2 + 1, degree + 2)
 }
 
 /// Lagrange polynomials on `[0, 1]`.

@@ -56,38 +56,6 @@ fn moments_and_surface_of_a_cube_are_exact_also_with_its_sides_on_those_of_cells
     }
 }
 
-/// However fine the triangles are, their points are no more than functions of the degree require: they integrate those exactly.
-#[test]
-fn small_triangles_have_few_points() {
-    const PARTS: usize = 4;
-    let plain = cube([0.1; 3], [0.9; 3]);
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for k in 0..plain.triangles().len() {
-        let [a, b, c] = plain.corners(k);
-        let mut add = |of: [[usize; 2]; 3]| {
-            let at = |[i, j]: [usize; 2]| a + (b - a) * (i as f64 / PARTS as f64) + (c - a) * (j as f64 / PARTS as f64);
-            let first = vertices.len() as u32;
-            vertices.extend(of.map(at));
-            triangles.push([first, first + 1, first + 2]);
-        };
-        for i in 0..PARTS {
-            for j in 0..PARTS - i {
-                add([[i, j], [i + 1, j], [i, j + 1]]);
-                if i + j + 2 <= PARTS {
-                    add([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
-                }
-            }
-        }
-    }
-    let fine = FacetBody::new(TriangleMesh::new(vertices, &triangles).unwrap()).unwrap();
-    let cell = Aabb::new(Point::<3>::zeros(), Point::<3>::repeat(1.0));
-    let rule = fine.rule(&cell, &Integration::Exact { points: None }, 2);
-    assert_eq!(rule.boundary.len(), 4 * 12 * PARTS * PARTS);
-    let square: f64 = rule.boundary.iter().map(|p| p.weight * p.x[0] * p.x[0]).sum();
-    let exact = 0.64 * (0.01 + 0.81) + 4.0 * 0.8 * (0.729 - 0.001) / 3.0;
-    assert!((square - exact).abs() < 1e-13, "{square} for {exact}");
-}
-
 /// A piece that is small against a side of its cell touches the cell beside it there.
 #[test]
 fn small_sections_of_sides_are_found() {

@@ -370,6 +370,11 @@ impl Deck {
         self.space.unwrap_or(Space::Solid)
     }
 
+    /// Mass per volume of a material, where it is stated.
+    pub fn density(&self, material: &str) -> Option<f64> {
+        self.materials.get(material).and_then(|(_, m)| m.density)
+    }
+
     /// The group of a mesh that holds a set of nodes: a surface of the same name has the plain name.
     pub fn node_group(&self, set: &str) -> String {
         if self.surfaces.contains(set) { format!("{set} nodes") } else { set.to_string() }

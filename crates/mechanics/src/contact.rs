@@ -42,6 +42,7 @@ use crate::points::{Anchor, Direction, Master, MasterProjection, Order, Sampling
 pub(crate) use axes::axes;
 use partner::Partners;
 use signorini_geometry::{Point, Vector};
+use std::collections::BTreeMap;
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -59,6 +60,8 @@ pub struct Contact {
     pub pairing: Pairing,
     partners: Partners,
     sites: Vec<Site>,
+    /// The other sites at the node of each, on faces beyond an edge.
+    beyond_edges: Vec<Vec<Site>>,
     /// What the sites remember of the last state.
     pub(crate) memory: Vec<SiteMemory>,
     /// The rotation vectors of slave and master at the last state, of rigid bodies.
@@ -133,6 +136,7 @@ impl Contact {
         if slave.0 == master.0 {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
+        let beyond_edges = beyond_edges(slave.1, &sites, sampling);
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
         let enforcement = if both_rigid { enforcement.between_rigid_bodies() } else { enforcement };
         // The gap to a rigid body is known anywhere.
@@ -150,6 +154,7 @@ impl Contact {
             partners: Partners::new(),
             memory: vec![SiteMemory::default(); sites.len()],
             sites,
+            beyond_edges,
             turned: [Vector::<3>::zeros(); 2],
             departed: None,
         })
@@ -157,10 +162,11 @@ impl Contact {
 
     /// Keeps some of the sites.
     pub(crate) fn keep(&mut self, kept: &[bool]) {
-        fn filtered<T: Copy>(list: &[T], kept: &[bool]) -> Vec<T> {
-            list.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| *v).collect()
+        fn filtered<T: Clone>(list: &[T], kept: &[bool]) -> Vec<T> {
+            list.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| v.clone()).collect()
         }
         self.sites = filtered(&self.sites, kept);
+        self.beyond_edges = filtered(&self.beyond_edges, kept);
         self.law.stiffness = filtered(&self.law.stiffness, kept);
         self.law.areas = filtered(&self.law.areas, kept);
         self.law.kept = filtered(&self.law.kept, kept);
@@ -235,6 +241,9 @@ impl Contact {
             _ => master.nearest(&placed.x, self.reach + placed.radius, except),
         };
         let Some(met) = met else { return (placed, None) };
+        if self.is_met_beyond_an_edge(k, sides.slave, (&placed, &met)) {
+            return (placed, Some(Err(NoPair::FacesAway)));
+        }
         // Pairs that are kept have slips of their own.
         let friction = self.law.is_tangential() && self.pairing == Pairing::Now;
         let stuck = self.memory[k].stuck.filter(|_| friction);
@@ -248,11 +257,11 @@ impl Contact {
             friction,
             axis: self.axis,
         };
-        let arrives = friction && stuck.is_none() && placed.outward.is_some() && met.is_surface();
+        let arrives = friction && stuck.is_none() && placed.outward.is_some() && met.outward().is_some();
         let measured = |order| {
             let mut pair = encounter.measure(order)?;
             if arrives {
-                self.count_from_departure(sides, &mut pair);
+                self.count_from_departure(sides, master, &mut pair);
             }
             Ok(self.with_stress(k, sides, pair))
         };
@@ -266,11 +275,17 @@ impl Contact {
 
     /// The slip of a site of a surface that met nothing in the last state, such as one that the end of the master has slid over since:
     /// how far what meets now has come along each other, by the motion of both sides.
-    fn count_from_departure(&self, sides: &Sides<'_>, pair: &mut Pair) {
+    fn count_from_departure(&self, sides: &Sides<'_>, master: &dyn Master, pair: &mut Pair) {
         let Some(departed) = &self.departed else { return };
-        let sides = [sides.slave, sides.master].into_iter().zip(sides.first).zip(departed);
         let mut came = Vector::<3>::zeros();
-        for (((body, state), first), before) in sides.take(if self.is_within() { 1 } else { 2 }) {
+        if sides.master.0.is_rigid() {
+            let Ok(before) = sides.master.0.master(self.master.group.as_deref(), &departed[1]) else { return };
+            let moved = master.at(&pair.point).x - before.at(&pair.point).x;
+            came -= moved - pair.normal * pair.normal.dot(&moved);
+        }
+        let sides = [sides.slave, sides.master].into_iter().zip(sides.first).zip(departed);
+        let sides = sides.take(if self.is_within() { 1 } else { 2 });
+        for (((body, state), first), before) in sides.filter(|(((body, _), _), _)| !body.is_rigid()) {
             let own = first..first + body.unknowns() as u32;
             for (unknown, slip) in pair.unknowns.iter().zip(&pair.slip).filter(|(unknown, _)| own.contains(unknown)) {
                 let place = (unknown - first) as usize;
@@ -279,6 +294,21 @@ impl Contact {
         }
         pair.elastic = came;
         pair.d_elastic.clone_from(&pair.slip);
+    }
+
+    /// Whether a face beyond an edge of the slave looks at what a site meets much more than its own: along its own the gap would be
+    /// measured aslant, and the node would carry twice.
+    fn is_met_beyond_an_edge(
+        &self,
+        k: usize,
+        (body, state): (&dyn Body, &BodyState),
+        (placed, met): (&SlavePoint, &MasterProjection),
+    ) -> bool {
+        let others = &self.beyond_edges[k];
+        let (Some(own), false) = (placed.outward, others.is_empty()) else { return false };
+        let Some(outward) = met.outward() else { return false };
+        let looks = |normal: &Vector<3>| -normal.dot(&outward);
+        others.iter().filter_map(|site| body.placed(state, site).outward).any(|n| looks(&n) > MUCH_MORE * looks(&own))
     }
 
     /// The gap beyond which a site is open whatever it meets.
@@ -315,4 +345,31 @@ impl Contact {
         let stress = self.stress(k, sides).map(|s| Stress::new(&s, sides.first[0], &mut pair));
         MeasuredPair { pair, stress }
     }
+}
+
+/// How much more a face looks at something than another one, by the cosines of their normals, that alone meets it: at a right angle
+/// from 27 degrees on, while faces of a tip that are alike both meet what they touch.
+const MUCH_MORE: f64 = 2.0;
+
+/// The sites at the node of each site: a node at an edge has one on each smooth part of the surface.
+fn beyond_edges(body: &dyn Body, sites: &[Site], sampling: Sampling) -> Vec<Vec<Site>> {
+    let none = vec![Vec::new(); sites.len()];
+    if sampling != Sampling::Nodes || body.is_rigid() {
+        return none;
+    }
+    let start = body.start();
+    let placed: Vec<SlavePoint> = sites.iter().map(|site| body.placed(&start, site)).collect();
+    // A node is moved by unknowns of its own.
+    let mut at = BTreeMap::<Vec<u32>, Vec<usize>>::new();
+    for (k, point) in placed.iter().enumerate().filter(|(_, point)| point.outward.is_some()) {
+        at.entry(point.functions.iter().map(|f| f.unknown).collect()).or_default().push(k);
+    }
+    let mut out = none;
+    for list in at.values().filter(|list| list.len() > 1) {
+        for k in list {
+            let same = |other: &&usize| *other != k && (placed[**other].x - placed[*k].x).norm() == 0.0;
+            out[*k] = list.iter().filter(same).map(|other| sites[*other]).collect();
+        }
+    }
+    out
 }

@@ -158,12 +158,12 @@ pub enum MasterProjection {
 }
 
 impl MasterProjection {
-    /// Whether it is a point of the surface of a body that deforms.
-    pub fn is_surface(&self) -> bool {
+    /// The outward normal of the surface that is met; none on a curve.
+    pub fn outward(&self) -> Option<Vector<3>> {
         match self {
-            MasterProjection::Rigid(_) => false,
+            MasterProjection::Rigid(foot) => Some(foot.jet.normal),
             MasterProjection::Foot(foot) | MasterProjection::Cut(foot) | MasterProjection::Along(foot, _) => {
-                foot.outward.is_some()
+                foot.outward
             }
         }
     }

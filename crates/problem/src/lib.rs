@@ -134,6 +134,11 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Whether there is nothing but an equilibrium at t = 0.
+    pub fn is_at_one_time(&self) -> bool {
+        matches!(self.analysis, None | Some(Analysis::Equilibrium)) && self.steps.is_empty()
+    }
+
     /// A problem without bodies.
     pub fn new(space: Space) -> Self {
         Self {

@@ -113,9 +113,12 @@ pub(super) fn bodies(deck: &Deck) -> Result<Vec<Body>, ImportError> {
         }
         let Some(first) = by_section.keys().next().copied() else { continue };
         let law = material(first)?;
+        let density = |section: usize| deck.density(&deck.sections[section].material);
         let mut is_one = true;
         for section in by_section.keys() {
-            is_one &= material(*section)? == law && deck.sections[*section].axes == deck.sections[first].axes;
+            is_one &= material(*section)? == law
+                && density(*section) == density(first)
+                && deck.sections[*section].axes == deck.sections[first].axes;
         }
         if is_one {
             parts.push((part.clone(), first, false));

@@ -105,6 +105,9 @@ impl<'a> Writer<'a> {
             } else if body.is_rigid {
                 out.push_str(&self.motion(k));
             } else {
+                if let Some(density) = self.deck.density(&body.material) {
+                    let _ = writeln!(out, "density = {density:?}");
+                }
                 let hyperelastic = material::needs_finite_strain(&body.law);
                 if self.deck.finite_strain || hyperelastic {
                     out.push_str("strain = \"finite\"\n");

@@ -142,7 +142,7 @@ impl Model {
             } else {
                 return Err(wrong(format!("`{set}` is a part of several sections; state it for each of them")));
             };
-            let density = self.deck.materials.get(&section.material).and_then(|(_, m)| m.density);
+            let density = self.deck.density(&section.material);
             let none = || wrong(format!("the material `{}` has no *DENSITY", section.material));
             out.push((Place::ElementSet(place.to_string()), density.ok_or_else(none)?));
         }

@@ -75,7 +75,7 @@ U
 
 #[test]
 fn a_deck_becomes_bodies_supports_loads_and_contacts() {
-    let text = cubes(CONTACT, STEP);
+    let text = cubes(CONTACT, STEP).replace("*SOLID SECTION", "*DENSITY\n7.8e-9,\n*SOLID SECTION");
     let deck = deck("cubes.inp", &text).unwrap();
     assert_eq!(deck.title.as_deref(), Some("two cubes"));
     assert_eq!((deck.nodes.len(), deck.elements.len()), (16, 2));
@@ -86,7 +86,8 @@ fn a_deck_becomes_bodies_supports_loads_and_contacts() {
     assert_eq!((step.to, step.increments), (1.0, 4));
     let written = case_of("cubes.inp", &text);
     for line in [
-        "# - line 42: the stiffness 10000000.0 of the surfaces is left out; here they do not penetrate (`signorini import --keep-stiffness` keeps it)",
+        "# - line 44: the stiffness 10000000.0 of the surfaces is left out; here they do not penetrate (`signorini import --keep-stiffness` keeps it)",
+        "density = 7.8e-9",
         "material.linear_elastic = { youngs_modulus = 210000.0, poissons_ratio = 0.3 }",
         "connected_to = 11",
         "sides.pressure = [\"2 2\"]",

@@ -137,8 +137,7 @@ impl Iterated for Contact {
     }
 
     fn depart(&mut self, from: Bodies<'_>) {
-        let is_rigid = |part: &Part| from.bodies[part.body].is_rigid();
-        let rubs = self.law.is_tangential() && !is_rigid(&self.slave) && !is_rigid(&self.master);
+        let rubs = self.law.is_tangential() && !from.bodies[self.slave.body].is_rigid();
         self.departed = rubs.then(|| [&self.slave, &self.master].map(|part| from.side(part).1.clone()));
     }
 

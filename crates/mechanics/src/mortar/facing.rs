@@ -1,6 +1,6 @@
 //! Which faces of whole bodies may touch each other: of two thin bodies that lie on each other only those between them.
 
-use super::within::Within;
+use super::within::{Within, vertices};
 use crate::body::{Body, PlaceError};
 use crate::part::Part;
 use crate::points::Master;
@@ -8,6 +8,7 @@ use crate::surface::{Faces, Surface};
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, is_facing};
 use signorini_geometry::{Point, Vector};
+use std::collections::{BTreeMap, VecDeque};
 
 /// The faces of both sides that may touch; all of a side where nothing else is said.
 #[derive(Clone, Debug, Default)]
@@ -21,8 +22,8 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// Of a whole body of small strains, which does not turn far, those faces that look at the other side at the start: over
-    /// the closest point of the other, against its normal. Of what is stated as a group all.
+    /// Of a whole body of small strains, which does not turn far, those faces that look at the other side at the start, over
+    /// the closest point of the other, against its normal, and what goes on from them. Of what is stated as a group all.
     ///
     /// # Errors
     /// A side that cannot be touched.
@@ -43,11 +44,11 @@ impl Facing {
         let looks = looking(surface, (other.as_ref(), size));
         let mut out = Facing { is_away: looks.is_none(), ..Facing::default() };
         if is_whole(slave) {
-            out.slave = looks;
+            out.slave = looks.map(|list| gone_on(surface, &list));
         }
         if let Some(faces) = master.1.surface(master.0.group.as_deref(), &states[1]).filter(|_| is_whole(master)) {
-            out.master =
-                looking(faces.as_ref(), (slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref(), size));
+            let looks = looking(faces.as_ref(), (slave.1.master(slave.0.group.as_deref(), &states[0])?.as_ref(), size));
+            out.master = looks.map(|list| gone_on(faces.as_ref(), &list));
         }
         Ok(out)
     }
@@ -81,6 +82,33 @@ fn looking(surface: &dyn Surface, (other, size): (&dyn Master, f64)) -> Option<V
     };
     let list: Vec<bool> = centres(surface).par_iter().map(looks).collect();
     list.contains(&true).then_some(list)
+}
+
+/// Cosine of the angle to a face up to which what hangs together with it lies on the same side of a body.
+const SAME_SIDE: f64 = 0.1;
+
+/// Some faces with all that hang together with them and lie on the same side of the body, whose normal is within a right angle
+/// of theirs: where the other body may slide to.
+fn gone_on(surface: &dyn Surface, from: &[bool]) -> Vec<bool> {
+    let corners = vertices(surface);
+    let normals: Vec<Vector<3>> = centres(surface).iter().map(|(_, n)| n.try_normalize(0.0).unwrap_or(*n)).collect();
+    let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (face, list) in corners.iter().enumerate() {
+        list.iter().for_each(|v| around.entry(*v).or_default().push(face));
+    }
+    // The normal of the face from which each is reached first.
+    let mut reached: Vec<Option<Vector<3>>> = from.iter().zip(&normals).map(|(is, n)| is.then_some(*n)).collect();
+    let mut front: VecDeque<usize> = (0..from.len()).filter(|face| from[*face]).collect();
+    while let Some(face) = front.pop_front() {
+        for next in corners[face].iter().filter_map(|v| around.get(v)).flatten() {
+            let side = reached[face].filter(|side| reached[*next].is_none() && side.dot(&normals[*next]) > SAME_SIDE);
+            if side.is_some() {
+                reached[*next] = side;
+                front.push_back(*next);
+            }
+        }
+    }
+    reached.iter().map(Option::is_some).collect()
 }
 
 /// Middle and normal of every face.

@@ -184,8 +184,7 @@ impl Mortar {
                     add(faces.par_iter().map(|list| sides.slips(carried, list, false)).collect());
                 }
                 // How the points that match change is how the points move along each other.
-                let arrived: Vec<Matched> = measured.arrived.iter().map(|(point, _)| point.clone()).collect();
-                let arrived: Vec<&[Matched]> = arrived.chunk_by(|a, b| a.face == b.face).collect();
+                let arrived: Vec<&[Matched]> = measured.arrived.chunk_by(|a, b| a.face == b.face).collect();
                 for faces in arrived.chunks(AT_ONCE).filter(|_| wanted == Wanted::Tangent) {
                     add(faces.par_iter().map(|list| sides.slips(carried, list, true)).collect());
                 }

@@ -106,8 +106,8 @@ impl<'a> Sides<'a> {
                 };
                 let met = cover.points.iter().map(|list| list.iter().map(of).collect()).collect();
                 let apart = matched.par_iter().map(|m| Some(surfaces.apart(m))).collect();
-                let arrived = self.arrived(contact, &cover);
-                Measured { cover, met, apart, arrived, pairs: Vec::new(), matched: Vec::new(), lost: 0 }
+                let (arrived, came) = self.arrived(contact, &cover).into_iter().unzip();
+                Measured { cover, met, apart, arrived, came, pairs: Vec::new(), matched: Vec::new(), lost: 0 }
             }
             Facing::OnRigid(sides) => {
                 let (pairs, lost) = sides.pairs(&cover);
@@ -118,7 +118,7 @@ impl<'a> Sides<'a> {
                 let of =
                     |pair: &Option<Pair>| pair.as_ref().map(|pair| Apart { normal: pair.normal, vector: pair.elastic });
                 let apart = matched.iter().map(of).collect();
-                Measured { cover, met, apart, arrived: Vec::new(), pairs, matched, lost }
+                Measured { cover, met, apart, arrived: Vec::new(), came: Vec::new(), pairs, matched, lost }
             }
         }
     }
@@ -179,7 +179,7 @@ impl Mortar {
             }
         }
         let matched = self.matched.iter().zip(&measured.apart).filter_map(|(m, apart)| Some((m, apart.as_ref()?)));
-        for (matched, apart) in matched.chain(measured.arrived.iter().map(|(m, came)| (m, came))) {
+        for (matched, apart) in matched.chain(measured.arrived.iter().zip(&measured.came)) {
             for (node, share) in &matched.shares {
                 let Some(axes) = self.axes(*node, &apart.normal) else { continue };
                 let own = &mut out[*node as usize];

@@ -40,8 +40,9 @@ pub struct Measured {
     pub met: Vec<Vec<Option<MetPoint>>>,
     /// How far each matched point is apart; none without friction.
     pub apart: Vec<Option<Apart>>,
-    /// The points of nodes that the last state did not match, with how far they came since; none without friction.
-    pub arrived: Vec<(Matched, Apart)>,
+    /// The points of nodes that the last state did not match, and how far they came since; none without friction.
+    pub arrived: Vec<Matched>,
+    pub came: Vec<Apart>,
     /// The pairs with a rigid master, of points and of matched points; else none.
     pub pairs: Vec<Vec<Option<Pair>>>,
     pub matched: Vec<Option<Pair>>,
@@ -60,7 +61,8 @@ impl Measured {
 /// A node in a state: means over the area of its dual function.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NodeMeasure {
-    /// Area of the part that sees the master, and of the part that did at the last state.
+    /// Area of the part that sees the master, and of the part whose slip is known: that saw it at the last state, or all that
+    /// arrived since.
     pub weight: f64,
     pub matched: f64,
     pub gap: f64,

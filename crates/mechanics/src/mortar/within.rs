@@ -65,7 +65,7 @@ impl Within {
     }
 }
 
-fn vertices(surface: &dyn Surface) -> Vec<Vec<u32>> {
+pub(super) fn vertices(surface: &dyn Surface) -> Vec<Vec<u32>> {
     fn of<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<Vec<u32>> {
         (0..faces.face_count()).map(|face| faces.vertices(face)).collect()
     }

@@ -35,7 +35,7 @@ const NEAR: f64 = 1e-3;
 /// Change of a step, relative to the sizes, that ends its iterations, or relative to the step itself: the next one mends that;
 /// and what rounding leaves at worst.
 const SAME: f64 = 1e-13;
-const SHARE: f64 = 1e-5;
+const SHARE: f64 = 1e-7;
 const ROUNDING: f64 = 1e-10;
 const MOST_ITERATIONS: usize = 40;
 
@@ -247,11 +247,12 @@ impl<'a> Motion<'a> {
             let (blocks, rows) = self.rows(&points.iter().collect::<Vec<_>>(), &coupled);
 
             let mut matrix = loads.stiffness;
-            resisting(&mut matrix);
+            let all: Vec<u32> = (0..n as u32).collect();
+            self.keep_resisting(&mut matrix, &all);
             for p in &points {
                 let Some(force) = forces.get(&p.id) else { continue };
                 let mut own = self.geometric(p, force);
-                resisting(&mut own);
+                self.keep_resisting(&mut own, &p.pair.unknowns);
                 p.add_to(&mut matrix, &own);
             }
             let mut right = DVector::from_column_slice(&loads.forces);
@@ -358,17 +359,21 @@ impl<'a> Motion<'a> {
         let as_step = |k: usize| if self.turns[k] { force(k) / self.extent[k] } else { force(k) * self.extent[k] };
         self.largest(&(0..step.len()).map(as_step).collect::<Vec<_>>()) / self.load
     }
-}
 
-/// Leaves of a symmetric matrix the part that resists.
-fn resisting(matrix: &mut DMatrix<f64>) {
-    if matrix.iter().all(|v| *v == 0.0) {
-        return;
+    /// Leaves of the symmetric stiffness of some unknowns the part that resists, in the metric of the bodies, so that units
+    /// of length change nothing.
+    fn keep_resisting(&self, stiffness: &mut DMatrix<f64>, unknowns: &[u32]) {
+        if stiffness.iter().all(|v| *v == 0.0) {
+            return;
+        }
+        let root = |k: usize| self.metric(unknowns[k] as usize).sqrt();
+        let n = unknowns.len();
+        let eigen = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / (root(i) * root(j))).symmetric_eigen();
+        if eigen.eigenvalues.iter().all(|v| *v >= 0.0) {
+            return;
+        }
+        let kept = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| v.max(0.0)));
+        let scaled = &eigen.eigenvectors * kept * eigen.eigenvectors.transpose();
+        *stiffness = DMatrix::from_fn(n, n, |i, j| scaled[(i, j)] * root(i) * root(j));
     }
-    let eigen = matrix.clone().symmetric_eigen();
-    if eigen.eigenvalues.iter().all(|v| *v >= 0.0) {
-        return;
-    }
-    let kept = eigen.eigenvalues.map(|v| v.max(0.0));
-    *matrix = &eigen.eigenvectors * DMatrix::from_diagonal(&kept) * eigen.eigenvectors.transpose();
 }

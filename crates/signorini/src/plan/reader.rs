@@ -50,7 +50,8 @@ impl Reader<'_> {
     /// The expression of a value of the given dimension, in which the listed variables are known.
     ///
     /// # Errors
-    /// What is no expression, with the place in it; another dimension; a unit where the problem has none.
+    /// What is no expression, with the place in it; another dimension; a unit where the problem has none; one that depends on
+    /// time without steps.
     pub fn expression(
         &self,
         value: &Value,
@@ -62,6 +63,12 @@ impl Reader<'_> {
             Some(found) if found != dimension => Err(self
                 .error(value, format!("the unit is that of {}", describe(found)))
                 .help(format!("expected is {}", describe(dimension)))),
+            _ if expression.uses_time() && self.problem.is_at_one_time() => {
+                let key = self.problem.key(value);
+                Err(self
+                    .error(value, format!("`{key}` depends on t, but there are no steps"))
+                    .help("add for example  [[steps]]  to = 1.0  increments = 10"))
+            }
             _ => Ok(expression),
         }
     }

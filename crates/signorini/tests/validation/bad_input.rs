@@ -177,6 +177,9 @@ fn a_check_refuses_what_a_run_refuses() {
         assert_eq!(error(&case).message, message);
     }
     assert!(checked(&ball(5.0, "-0.1*t", "")).is_ok());
+    // At t = 0 alone nothing that depends on time would happen.
+    let without_steps = ball(5.0, "-0.1*t", "").replace("[[steps]]\nto = 1\nincrements = 2\n", "");
+    assert!(checked(&without_steps).is_err_and(|m| m.contains("depends on t, but there are no steps")));
     // Increments that are too large are cut.
     let found = super::summary(&ball(5.0, "-0.9*t", ""), &super::set(&[]));
     assert_ne!(found["steps"][0]["reason"], "increment", "{}", found["verdict"]);
@@ -307,7 +310,7 @@ const CELLS: &str = "space = \"plane_strain\"\n[bodies.egg.cells]\ngeometry.box 
     mesh.grid = { cells = [2, 2] }\ndegree = 1\nmaterial.linear_elastic = { youngs_modulus = 1, poissons_ratio = 0.3 }\n\
     groups.low = \"y < 0.1\"\n[bodies.plate.rigid]\nshape.plane = { point = [0, 1], normal = [0, -1] }\n\
     motion.prescribed = { displacement = [0, \"-0.01*t\"] }\n[supports.base]\non = \"egg:low\"\ndisplacement = [0, 0]\n\
-    [contacts.press]\nbetween = [\"egg:top\", \"plate\"]\n";
+    [contacts.press]\nbetween = [\"egg:top\", \"plate\"]\n[[steps]]\nto = 1\n";
 
 #[test]
 fn mistakes_in_systems_are_told_at_their_places() {

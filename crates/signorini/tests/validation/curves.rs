@@ -206,3 +206,41 @@ increments = 2
     let last = found["steps"].as_array().and_then(|s| s.last()).expect("a step");
     assert!(number(&last["iterations"]) <= 1000.0, "{}", last["iterations"]);
 }
+
+/// Two beams woven over each other with friction, pulled straight: what crosses from one cell to the next, with its friction,
+/// in few increments as in many.
+#[test]
+fn woven_beams_are_pulled_with_friction() {
+    let beam = |name: &str, points: &str, pull: &str| {
+        format!(
+            r#"
+[bodies.{name}.beam]
+path.spline = {{ points = {points} }}
+cells = 12
+section.circle = {{ radius = 1 }}
+material.linear_elastic = {{ youngs_modulus = 500, poissons_ratio = 0.3 }}
+[supports.{name}_start]
+on = "{name}:start"
+displacement = [0, 0, 0]
+[supports.{name}_end]
+on = "{name}:end"
+displacement = {pull}
+"#
+        )
+    };
+    let case = |increments: usize| {
+        let [warp, weft] = [
+            beam("warp", "[[5, 0, 0], [5, 5, 1.05], [5, 10, 0]]", "[0, \"0.5*t\", 0]"),
+            beam("weft", "[[0, 5, 0], [5, 5, -1.05], [10, 5, 0]]", "[\"0.5*t\", 0, 0]"),
+        ];
+        let contact = "[contacts.net]\nbetween = [\"warp\", \"weft\"]\nfriction.coulomb = { mu = 0.3 }\n";
+        let text = format!("space = \"3d\"\n{warp}{weft}{contact}[[steps]]\nto = 1\nincrements = {increments}\n");
+        let found = summary(&text, &set(&[]));
+        let force = last_step(&found)["contacts"]["net"]["force"].clone();
+        [0, 1, 2].map(|k| number(&force[k]))
+    };
+    let [few, many] = [5, 40].map(case);
+    // Both beams are alike.
+    assert!((few[0] + few[1]).abs() < 2e-2 * few[2], "{few:?}");
+    assert!((0..3).all(|k| (few[k] - many[k]).abs() < 2e-2 * many[2]), "{few:?} and {many:?}");
+}

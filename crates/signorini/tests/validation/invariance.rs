@@ -152,3 +152,47 @@ fn moving_the_problem_over_its_grid_changes_less_than_the_discretisation_error()
         assert!((area(dx, dy) - exact).abs() < 1e-8, "shift {dx}, {dy}");
     }
 }
+
+/// Three balls that fall into a narrow box with friction, in a unit of length.
+fn balls(unit: f64) -> Value {
+    let mut case = String::from("space = \"3d\"\n");
+    let list = [[0.505, 0.5, 0.012, 0.428], [1.592, 0.5, -0.04, 0.44], [0.53, 1.51, 0.006, 0.474]];
+    for (k, [x, z, y, radius]) in list.iter().enumerate() {
+        let [center, radius, weight] = [
+            format!("[{}, {}, {}]", x * unit, y * unit, z * unit),
+            (radius * unit).to_string(),
+            (8.0 * radius.powi(3)).to_string(),
+        ];
+        case += &format!(
+            "[bodies.ball{k}.rigid]\nshape.sphere = {{ center = {center}, radius = {radius} }}\nmotion.free = {{}}\n"
+        );
+        case += &format!("[loads.weight{k}]\non = \"ball{k}\"\nforce = [0, 0, -{weight}]\n");
+    }
+    let walls: [[f64; 6]; 5] = [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        [2.1, 0.0, 0.0, -1.0, 0.0, 0.0],
+        [0.0, -0.5, 0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.5, 0.0, 0.0, -1.0, 0.0],
+    ];
+    for (k, [x, y, z, a, b, c]) in walls.iter().enumerate() {
+        let point = format!("[{}, {}, {}]", x * unit, y * unit, z * unit);
+        case += &format!("[bodies.wall{k}.rigid]\nshape.plane = {{ point = {point}, normal = [{a}, {b}, {c}] }}\n");
+    }
+    case += "[contacts.all]\nall = true\nfriction.coulomb = { mu = 0.3 }\n";
+    summary(&case, &set(&[]))
+}
+
+#[test]
+fn the_unit_of_length_does_not_choose_where_balls_come_to_rest() {
+    let [metre, millimetre] = [1.0, 1000.0].map(balls);
+    for k in 0..3 {
+        let place = |found: &Value, unit: f64| {
+            let moved = last_step(found)["free_bodies"][format!("ball{k}")]["displacement"].clone();
+            [0, 1, 2].map(|i| number(&moved[i]) / unit)
+        };
+        let [a, b] = [place(&metre, 1.0), place(&millimetre, 1000.0)];
+        let apart = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-11 && a[2].abs() > 1e-3, "ball {k}: {a:?} and {b:?}");
+    }
+}

@@ -12,7 +12,7 @@ use super::head::Head;
 use super::located::{LocatedExpression, field};
 use super::memory::{memory_at_hand, memory_estimate};
 use super::surface::Contact;
-use crate::problem::{self, Body, CaseError, Space};
+use crate::problem::{self, Body, Space};
 use signorini_fem::{Cells, Grid};
 use signorini_geometry::Point;
 use signorini_membrane::domain::{Domain, DomainOnCells};
@@ -67,21 +67,6 @@ impl<const D: usize> MembranePlan<D> {
             .chain(self.loads.values())
             .chain(self.supports.iter().map(|s| &s.displacement))
             .chain(touched)
-    }
-
-    /// Something that depends on time needs steps.
-    pub(super) fn check_time(&self) -> Result<(), CaseError> {
-        if !self.head.problem.steps.is_empty() {
-            return Ok(());
-        }
-        match self.expressions().find(|p| p.expression.uses_time()) {
-            None => Ok(()),
-            Some(p) => Err(self
-                .head
-                .problem
-                .error(&p.key, format!("`{}` depends on t, but there are no steps", p.key))
-                .help("add for example  [[steps]]  to = 1.0  increments = 10")),
-        }
     }
 
     /// The membrane at one time.

@@ -156,7 +156,6 @@ impl Planner<'_> {
             kernel: <Self as domain::ReadDomain<D>>::KERNEL,
             probes,
         };
-        plan.check_time()?;
         let membrane = plan.at(plan.increments[0].range[0]);
         for (name, x) in plan.probes.iter().filter(|(_, x)| !membrane.contains(x)) {
             let at: Vec<String> = x.iter().map(f64::to_string).collect();

@@ -3,7 +3,7 @@
 
 use super::events::{self, Condition};
 use super::{Failure, MechanicsModel, recovered, tell_iteration};
-use crate::plan::mechanics::more_friction::laws_with_more_friction;
+use crate::plan::mechanics::other_friction::laws_with_friction_times;
 use crate::problem::CaseError;
 use crate::report::{ContactEvent, Reason, Warning, WarningKind};
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,9 @@ const ROUNDING: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
 const MOST_SOLVED: usize = 800_000;
+/// Part of them after which an increment with friction is cut: its state depends on the way to it, and shorter parts are a surer way
+/// than any other. The last one, which is not cut any more, is left enough to find out what is free.
+const SOON: usize = 8;
 
 /// What decides how increments are cut, from one to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -147,11 +150,13 @@ impl MechanicsModel {
             let part = target - reached;
             let mut seen = Vec::new();
             let mut is_given_up = false;
+            let is_cut_soon = part > smallest && self.plan.system.has_friction();
+            let most_of_part = if is_cut_soon { most / SOON } else { most };
             let mut report = |iteration: usize, residual: f64| {
                 tell_iteration(progress, index, target, (iteration, residual));
                 seen.push(residual);
                 is_given_up = total.residuals.len() + seen.len() - spent >= most;
-                !is_given_up && !progress.interrupted()
+                !is_given_up && seen.len() < most_of_part && !progress.interrupted()
             };
             let kept = if may_be_rejected { self.plan.system.histories() } else { Vec::new() };
             let found = self.plan.system.solve(&self.state, target, &mut report);
@@ -216,6 +221,7 @@ impl MechanicsModel {
                     let remedy = slides.unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
+                Err(IncrementError::Interrupted) if is_cut_soon && !progress.interrupted() => size = part * CUT,
                 Err(error) => {
                     let curable = !matches!(
                         error,
@@ -260,14 +266,27 @@ impl MechanicsModel {
     /// What slides where there is an equilibrium only if friction is `MORE` times what the case states, in words. The state stays as
     /// it is.
     fn lacks_friction(&mut self, target: f64, progress: &mut dyn Progress) -> Option<String> {
-        let system = &mut self.plan.system;
-        if system.dynamics.is_some() || progress.interrupted() {
+        if self.plan.system.dynamics.is_some() || !self.has_state_with(MORE, target, progress) {
             return None;
         }
+        // What rests with less friction as well does not slide for want of it.
+        if self.has_state_with(1.0 / MORE, target, progress) {
+            return Some(NOT_FOUND.to_string());
+        }
+        Some(format!(
+            "with {MORE} times the friction there is an equilibrium at t = {target:.6}, so friction is too small, and what it \
+             does not hold slides{}; hold it otherwise, or use more friction or a smaller load",
+            self.at_the_limit().unwrap_or_default()
+        ))
+    }
+
+    /// Whether there is an equilibrium with so many times the friction.
+    fn has_state_with(&mut self, times: f64, target: f64, progress: &mut dyn Progress) -> bool {
+        let system = &mut self.plan.system;
         let names: Vec<String> = system.contacts.iter().map(|c| c.name().to_string()).collect();
-        let laws = laws_with_more_friction(&self.plan.head.problem, &names, MORE).ok()?;
-        if laws.iter().all(Option::is_none) {
-            return None;
+        let Ok(laws) = laws_with_friction_times(&self.plan.head.problem, &names, times) else { return false };
+        if progress.interrupted() || laws.iter().all(Option::is_none) {
+            return false;
         }
         let kept = system.histories();
         let stated: Vec<_> = (system.contacts.iter_mut().zip(laws))
@@ -285,13 +304,7 @@ impl MechanicsModel {
             }
         }
         system.put_back(&kept);
-        found.is_ok().then(|| {
-            format!(
-                "with {MORE} times the friction there is an equilibrium at t = {target:.6}, so friction is too small, and what it \
-                 does not hold slides{}; hold it otherwise, or use more friction or a smaller load",
-                self.at_the_limit().unwrap_or_default()
-            )
-        })
+        found.is_ok()
     }
 
     /// What happened to the contacts in a part of an increment.
@@ -321,10 +334,13 @@ fn not_kept(error: f64, [from, to]: [f64; 2]) -> Warning {
     Warning::new(WarningKind::ErrorInTime, message).at_time(to)
 }
 
-/// How much more friction is tried where there seems to be no equilibrium: what rests with it, and not without it, slides.
+/// How much more friction is tried where there seems to be no equilibrium, and how much less: what rests with more, and not with
+/// less, slides.
 const MORE: f64 = 4.0;
 /// Part of the available friction of a contact, in the mean over its pressure, that is all of it but for the size of increments.
 const NEAR_LIMIT: f64 = 0.95;
+const NOT_FOUND: &str = "there are equilibria with more and with less friction, so the iteration does not find this one: use more \
+                         increments, or other cells";
 const NO_EQUILIBRIUM: &str = "there may be no equilibrium: check that every loaded body is supported; use more increments, or \
                               more cells";
 

@@ -73,11 +73,8 @@ impl Contact {
             let found = self.traction(k, &touch, self.law.multiplier(k, lambda), ([0.0; 2], false));
             let pair = &touch.pair;
             let is_open = found.projected.status == Status::Open;
-            // Beside its end nothing of the master is where the site will meet it.
-            let apart = placed.x - master.at(&pair.point).x;
-            let aside = (apart - pair.normal * pair.normal.dot(&apart)).norm() > BESIDE * sides.master.0.size();
-            let deform = !sides.slave.0.is_rigid() && !sides.master.0.is_rigid();
-            let is_beside = is_open && aside && deform && placed.outward.is_some();
+            // What is beside the site is not what it will meet.
+            let is_beside = is_open && pair.is_beside && placed.outward.is_some() && !sides.slave.0.is_rigid();
             let mut own = SiteMemory { stuck: pair.stuck.filter(|_| !is_beside), slip: [0.0; 2] };
             let mut traction = found.projected.traction;
             if self.law.is_tangential() && found.projected.status != Status::Open {
@@ -105,9 +102,6 @@ impl Contact {
         Ok(())
     }
 }
-
-/// How far off the normal of what it meets, relative to the size of the master, a site is beside it: rounding.
-const BESIDE: f64 = 1e-9;
 
 /// Friction as it acts on a point that it moves by `slip` per unit of each unknown: by the unknown that moves the point most along
 /// each axis.

@@ -7,6 +7,9 @@ use signorini_geometry::measures::{Measures, PartnerJet, Variation};
 use signorini_geometry::shape::CurveJet;
 use signorini_geometry::{Matrix, Vector};
 
+/// Sine of the angle to the normal, and relative difference of curvatures, from which a site is beside what it meets: rounding.
+const BESIDE: f64 = 1e-6;
+
 /// A slave site and the foot of its distance on a point, a curve or a surface.
 pub(super) struct AtFoot<'a, const N: usize> {
     pub encounter: &'a PairGeometry<'a>,
@@ -96,12 +99,19 @@ impl<'a, const N: usize> AtFoot<'a, N> {
             .collect()
     }
 
+    fn is_beside(&self) -> bool {
+        let apart = self.encounter.slave.x - self.foot.jet.x;
+        let aside = apart - self.normal * self.normal.dot(&apart);
+        self.foot.outward.is_some() && (N < 2 || aside.norm() > BESIDE * apart.norm())
+    }
+
     /// The gap with its variations, without slip.
     pub fn gap(&self, order: Order) -> Pair {
         let mut pair = Pair {
             gap: self.measures.gap - self.radii()[0] - self.radii()[1],
             normal: self.normal,
             point: self.foot.point,
+            is_beside: self.is_beside(),
             unknowns: self.columns.iter().map(|c| c.unknown).collect(),
             d_gap: self.variations.iter().map(|v| self.measures.gap_variation(v)).collect(),
             d_normal: self.normals(),
@@ -142,6 +152,13 @@ impl<'a> AtRigid<'a> {
         Ok(AtRigid { encounter, foot, columns, arm })
     }
 
+    /// Edges and vertices are where the distance curves as that from a line or a point.
+    fn is_beside(&self) -> bool {
+        let jet = &self.foot.jet;
+        let is_flat = jet.gap <= 0.0 || jet.hessian == Matrix::<3>::zeros();
+        !is_flat && jet.gap * jet.hessian.symmetric_eigenvalues().max() > 1.0 - BESIDE
+    }
+
     /// Whether nothing curves or turns, so that second variations are those of the position of the slave alone.
     pub fn is_plain(&self) -> bool {
         let zero = Vector::<3>::zeros();
@@ -166,6 +183,7 @@ impl<'a> AtRigid<'a> {
             gap: self.foot.jet.gap - self.encounter.slave.radius,
             normal,
             point: self.foot.point,
+            is_beside: self.is_beside(),
             unknowns: columns.iter().map(|c| c.unknown).collect(),
             d_gap: columns.iter().map(|c| normal.dot(&c.d)).collect(),
             d_normal: columns.iter().map(|c| hessian * c.d).collect(),

@@ -58,6 +58,8 @@ pub struct Pair {
     pub normal: Vector<3>,
     /// The material point of the master that is met.
     pub point: MaterialPoint,
+    /// Whether that is beside the site, at an end or edge of the surface: another point meets the site where it comes.
+    pub is_beside: bool,
     /// Unknowns of the system; one may be named twice, its contributions add up.
     pub unknowns: Vec<u32>,
     pub d_gap: Vec<f64>,

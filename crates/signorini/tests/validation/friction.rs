@@ -212,3 +212,113 @@ fn friction_reaches_what_the_end_of_a_body_slides_over() {
         }
     }
 }
+
+/// A block 0.7 long on a longer one, pressed and then moved along it by half a unit.
+fn block_on_a_longer_one(between: &str, more: &str) -> [f64; 3] {
+    let case = format!(
+        r#"
+space = "plane_strain"
+[bodies.blk.solid]
+mesh.box = {{ min = [-0.5, 0], max = [0.2, 0.6], cells = [3, 2] }}
+degree = 1
+material.linear_elastic = {{ youngs_modulus = 1100, poissons_ratio = 0 }}
+[bodies.base.solid]
+mesh.box = {{ min = [-2, -1], max = [2, 0], cells = [16, 2] }}
+degree = 1
+material.linear_elastic = {{ youngs_modulus = 1000, poissons_ratio = 0 }}
+[supports.head]
+on = "blk:top"
+displacement = ["0.5*max(t - 1, 0)", "-0.01*min(t, 1)"]
+[supports.ground]
+on = "base:bottom"
+displacement = [0, 0]
+[contacts.c]
+between = {between}
+{more}
+[[steps]]
+to = 1
+[[steps]]
+to = 2
+increments = 4
+"#
+    );
+    let found = summary(&case, &set(&[]));
+    let force = last_step(&found)["contacts"]["c"]["force"].clone();
+    [0, 1, 2].map(|k| number(&force[k]))
+}
+
+/// Whole bodies of small strain are met where they slide to as well, and a node at an edge carries once: as with the faces named.
+#[test]
+fn whole_bodies_slide_far() {
+    let friction = "friction.coulomb = { mu = 0.3 }\n";
+    for more in [friction, "slave = \"base\"\n", "slave = \"blk\"\nmethod.node = {}\n"] {
+        let [whole, faces] = ["[\"blk\", \"base\"]", "[\"blk:bottom\", \"base:top\"]"]
+            .map(|between| block_on_a_longer_one(between, more));
+        let apart = (0..2).map(|k| (whole[k] - faces[k]).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-6 * faces[1].abs() && faces[1] > 5.0, "{more}: {whole:?} and {faces:?}");
+    }
+}
+
+/// Friction of a block on a plane that closes and slides in one increment: the sides of the block, which looked away before, add
+/// nothing to it, neither pressure nor friction.
+#[test]
+fn a_node_at_an_edge_slips() {
+    let case = r#"
+space = "plane_strain"
+[bodies.blk.solid]
+mesh.box = { min = [0, 0], max = [1, 1], cells = [6, 6] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 1000, poissons_ratio = 0 }
+[bodies.base.rigid]
+shape.plane = { point = [0, 0], normal = [0, 1] }
+[supports.head]
+on = "blk:top"
+displacement = ["0.3*t", "-0.01*t"]
+[contacts.c]
+between = ["blk", "base"]
+method.node = {}
+friction.coulomb = { mu = 0.3 }
+[[steps]]
+to = 1
+"#;
+    let found = summary(case, &set(&[]));
+    let force = last_step(&found)["contacts"]["c"]["force"].clone();
+    let [along, across] = [0, 1].map(|k| number(&force[k]));
+    assert!((across - 10.0).abs() < 1e-2 && (along + 0.3 * across).abs() < 1e-3 * across, "{along} and {across}");
+}
+
+/// A block of cells comes down on a solid while it moves along it, in one increment, over points that were beside it: friction acts
+/// against its motion.
+#[test]
+fn friction_acts_against_the_motion_over_an_edge() {
+    let case = r#"
+space = "3d"
+[bodies.blk.cells]
+geometry.box = { min = [-0.5, -0.4, 0.3], max = [0.2, 0.4, 0.9] }
+mesh.grid = { cells = [3, 2, 2], min = [-0.5, -0.4, 0.3], max = [0.2, 0.4, 0.9] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 1100, poissons_ratio = 0 }
+[supports.head]
+on = "blk:top"
+displacement = ["0.3*t", "0.1*t", "-0.31*t"]
+[bodies.base.solid]
+mesh.box = { min = [-2, -1, -1], max = [2, 1, 0], cells = [8, 4, 2] }
+degree = 1
+material.linear_elastic = { youngs_modulus = 1000, poissons_ratio = 0 }
+[supports.ground]
+on = "base:bottom"
+displacement = [0, 0, 0]
+[contacts.c]
+between = ["blk", "base"]
+slave = "base"
+friction.coulomb = { mu = 0.3 }
+[[steps]]
+to = 1
+"#;
+    let found = summary(case, &set(&[]));
+    let friction = last_step(&found)["contacts"]["c"]["friction_force"].clone();
+    let [x, y] = [0, 1].map(|k| number(&friction[k]));
+    let angle = y.atan2(x).abs().to_degrees();
+    let exact = 180.0 - (0.1f64 / 0.3).atan().to_degrees();
+    assert!((angle - exact).abs() < 0.5, "{angle} for {exact} degrees");
+}

@@ -173,7 +173,7 @@ impl Problem<'_> {
         let found = match found {
             Some(found) => found,
             None => {
-                let grain = self.grain(out, held, &matrix.row_sizes());
+                let grain = self.grain(out, held, &matrix.row_sizes(self.is_spin.len()));
                 matrix.add_to_diagonal(&grain);
                 matrix.solve(&equations)?
             }

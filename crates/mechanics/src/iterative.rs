@@ -97,21 +97,22 @@ impl System {
         self.bodies.iter().filter(|b| b.unknowns() > 0).map(|b| of_body(b.as_ref())).sum()
     }
 
-    /// The largest entry of each row of a tangent that was assembled.
+    /// The largest entry of each row of a tangent that was assembled, in the columns of the bodies: those of multipliers have another
+    /// unit.
     pub(crate) fn row_sizes(&self, out: &Assembled, stiffness: Stiffness) -> Vec<f64> {
         let n = out.residual.len();
+        let (first, count) = self.numbering();
         if let Some(division) = &self.division {
-            return division.matrix(out).row_sizes();
+            return division.matrix(out).row_sizes(count);
         }
         if stiffness != Stiffness::KeptByBodies {
-            let mut sizes = out.tangent.matrix(n).row_sizes();
+            let mut sizes = out.tangent.matrix(n).row_sizes_within(count);
             if stiffness == Stiffness::Condensed {
                 self.condensed_row_sizes(&mut sizes);
             }
             return sizes;
         }
-        let mut sizes = out.tangent.row_sizes(n);
-        let (first, _) = self.numbering();
+        let mut sizes = out.tangent.row_sizes(n, count);
         for (body, first) in self.bodies.iter().zip(first) {
             let mut diagonal = vec![0.0; body.unknowns()];
             for block in body.subspaces().iter().flat_map(|s| &s.stiffness) {

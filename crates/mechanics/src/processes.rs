@@ -51,8 +51,8 @@ impl CellBlock {
 
 /// A matrix whose rows are distributed. Vectors are whole, and the same on all processes.
 pub trait DistributedMatrix {
-    /// The largest entry of each row.
-    fn row_sizes(&self) -> Vec<f64>;
+    /// The largest entry of each row in the first columns.
+    fn row_sizes(&self, columns: usize) -> Vec<f64>;
 
     fn diagonal(&self) -> Vec<f64>;
 

@@ -207,8 +207,12 @@ impl PetscMatrix {
 }
 
 impl DistributedMatrix for PetscMatrix {
-    fn row_sizes(&self) -> Vec<f64> {
-        self.by_row(|row| self.rows.row(row).fold(0.0f64, |m, (_, v)| m.max(v.abs())))
+    fn row_sizes(&self, columns: usize) -> Vec<f64> {
+        let is_first = |column: u32| (self.numbering.unknown[column as usize] as usize) < columns;
+        self.by_row(|row| {
+            let own = self.rows.row(row).filter(|(column, _)| is_first(*column));
+            own.fold(0.0f64, |m, (_, v)| m.max(v.abs()))
+        })
     }
 
     fn diagonal(&self) -> Vec<f64> {

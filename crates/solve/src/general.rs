@@ -43,13 +43,18 @@ impl Entries {
         (self.list, self.blocks.unwrap_or_default())
     }
 
-    /// The largest entry of each row, before entries at the same place are summed.
-    pub fn row_sizes(&self, n: usize) -> Vec<f64> {
+    /// The largest entry of each row in the first columns, before entries at the same place are summed.
+    pub fn row_sizes(&self, n: usize, columns: usize) -> Vec<f64> {
         let mut out = vec![0.0f64; n];
-        self.list.iter().for_each(|e| out[e.0 as usize] = out[e.0 as usize].max(e.2.abs()));
+        let mut take = |row: u32, column: u32, value: f64| {
+            if (column as usize) < columns {
+                out[row as usize] = out[row as usize].max(value.abs());
+            }
+        };
+        self.list.iter().for_each(|e| take(e.0, e.1, e.2));
         for (unknowns, values) in self.blocks.iter().flatten() {
             for (row, values) in unknowns.iter().zip(values.chunks(unknowns.len().max(1))) {
-                out[*row as usize] = values.iter().fold(out[*row as usize], |m, v| m.max(v.abs()));
+                unknowns.iter().zip(values).for_each(|(column, value)| take(*row, *column, *value));
             }
         }
         out
@@ -184,8 +189,13 @@ impl Matrix {
 
     /// The largest entry of each row.
     pub fn row_sizes(&self) -> Vec<f64> {
+        self.row_sizes_within(self.size())
+    }
+
+    /// The same of the first columns.
+    pub fn row_sizes_within(&self, columns: usize) -> Vec<f64> {
         let mut out = vec![0.0f64; self.size()];
-        (0..self.size()).flat_map(|j| self.column(j)).for_each(|(i, v)| out[i] = out[i].max(v.abs()));
+        (0..columns).flat_map(|j| self.column(j)).for_each(|(i, v)| out[i] = out[i].max(v.abs()));
         out
     }
 }

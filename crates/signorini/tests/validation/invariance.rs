@@ -196,3 +196,43 @@ fn the_unit_of_length_does_not_choose_where_balls_come_to_rest() {
         assert!(apart < 1e-11 && a[2].abs() > 1e-3, "ball {k}: {a:?} and {b:?}");
     }
 }
+
+/// A curved block pressed on another one by nodes, in units in which areas are much larger than forces.
+#[test]
+fn units_do_not_decide_when_solids_are_solved() {
+    let pressed = |length: f64, modulus: f64| {
+        let [l, e] = [length, modulus];
+        let case = format!(
+            r#"
+space = "plane_strain"
+[constants]
+l = {l:?}
+[bodies.top.solid]
+mesh.box = {{ min = ["-0.5*l", 0], max = ["0.5*l", "0.6*l"], cells = [6, 3], map = ["x", "y + 0.4*x^2/l*(1 - y/(0.6*l))"] }}
+material.linear_elastic = {{ youngs_modulus = {}, poissons_ratio = 0.3 }}
+[bodies.low.solid]
+mesh.box = {{ min = ["-l", "-l"], max = ["l", 0], cells = [11, 3] }}
+material.linear_elastic = {{ youngs_modulus = {}, poissons_ratio = 0.2 }}
+[supports.head]
+on = "top:top"
+displacement = [0, "-0.03*l*t"]
+[supports.ground]
+on = "low:bottom"
+displacement = [0, 0]
+[contacts.c]
+between = ["top:bottom", "low:top"]
+method.node = {{}}
+friction.coulomb = {{ mu = 0.3 }}
+[[steps]]
+to = 1
+"#,
+            1000.0 * e,
+            700.0 * e
+        );
+        let found = summary(&case, &set(&[]));
+        let step = last_step(&found).clone();
+        (number(&step["contacts"]["c"]["force"][1]) / (l * e), step["iterations"].clone())
+    };
+    let [usual, tiny] = [(1.0, 1.0), (1e6, 1e-6)].map(|(l, e)| pressed(l, e));
+    assert!((usual.0 - tiny.0).abs() < 1e-9 * usual.0 && usual.1 == tiny.1, "{usual:?} and {tiny:?}");
+}

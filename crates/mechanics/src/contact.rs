@@ -23,6 +23,8 @@
 
 mod assembly;
 mod axes;
+mod departure;
+mod edges;
 mod interaction;
 mod partner;
 mod partners;
@@ -42,7 +44,6 @@ use crate::points::{Anchor, Direction, Master, MasterProjection, Order, Sampling
 pub(crate) use axes::axes;
 use partner::Partners;
 use signorini_geometry::{Point, Vector};
-use std::collections::BTreeMap;
 
 /// Two sides that may touch.
 pub struct Contact {
@@ -136,7 +137,7 @@ impl Contact {
         if slave.0 == master.0 {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
-        let beyond_edges = beyond_edges(slave.1, &sites, sampling);
+        let beyond_edges = edges::beyond_edges(slave.1, &sites, sampling);
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
         let enforcement = if both_rigid { enforcement.between_rigid_bodies() } else { enforcement };
         // The gap to a rigid body is known anywhere.
@@ -273,44 +274,6 @@ impl Contact {
         (placed, Some(second))
     }
 
-    /// The slip of a site of a surface that met nothing in the last state, such as one that the end of the master has slid over since:
-    /// how far what meets now has come along each other, by the motion of both sides.
-    fn count_from_departure(&self, sides: &Sides<'_>, master: &dyn Master, pair: &mut Pair) {
-        let Some(departed) = &self.departed else { return };
-        let mut came = Vector::<3>::zeros();
-        if sides.master.0.is_rigid() {
-            let Ok(before) = sides.master.0.master(self.master.group.as_deref(), &departed[1]) else { return };
-            let moved = master.at(&pair.point).x - before.at(&pair.point).x;
-            came -= moved - pair.normal * pair.normal.dot(&moved);
-        }
-        let sides = [sides.slave, sides.master].into_iter().zip(sides.first).zip(departed);
-        let sides = sides.take(if self.is_within() { 1 } else { 2 });
-        for (((body, state), first), before) in sides.filter(|(((body, _), _), _)| !body.is_rigid()) {
-            let own = first..first + body.unknowns() as u32;
-            for (unknown, slip) in pair.unknowns.iter().zip(&pair.slip).filter(|(unknown, _)| own.contains(unknown)) {
-                let place = (unknown - first) as usize;
-                came += slip * (state.configuration[place] - before.configuration[place]);
-            }
-        }
-        pair.elastic = came;
-        pair.d_elastic.clone_from(&pair.slip);
-    }
-
-    /// Whether a face beyond an edge of the slave looks at what a site meets much more than its own: along its own the gap would be
-    /// measured aslant, and the node would carry twice.
-    fn is_met_beyond_an_edge(
-        &self,
-        k: usize,
-        (body, state): (&dyn Body, &BodyState),
-        (placed, met): (&SlavePoint, &MasterProjection),
-    ) -> bool {
-        let others = &self.beyond_edges[k];
-        let (Some(own), false) = (placed.outward, others.is_empty()) else { return false };
-        let Some(outward) = met.outward() else { return false };
-        let looks = |normal: &Vector<3>| -normal.dot(&outward);
-        others.iter().filter_map(|site| body.placed(state, site).outward).any(|n| looks(&n) > MUCH_MORE * looks(&own))
-    }
-
     /// The gap beyond which a site is open whatever it meets.
     fn closes_within(&self, k: usize, sides: &Sides<'_>, unknown: [f64; 3]) -> f64 {
         self.opens_beyond(k, unknown, || self.stress(k, sides).map_or(f64::INFINITY, |s| s.vector.norm()))
@@ -345,31 +308,4 @@ impl Contact {
         let stress = self.stress(k, sides).map(|s| Stress::new(&s, sides.first[0], &mut pair));
         MeasuredPair { pair, stress }
     }
-}
-
-/// How much more a face looks at something than another one, by the cosines of their normals, that alone meets it: at a right angle
-/// from 27 degrees on, while faces of a tip that are alike both meet what they touch.
-const MUCH_MORE: f64 = 2.0;
-
-/// The sites at the node of each site: a node at an edge has one on each smooth part of the surface.
-fn beyond_edges(body: &dyn Body, sites: &[Site], sampling: Sampling) -> Vec<Vec<Site>> {
-    let none = vec![Vec::new(); sites.len()];
-    if sampling != Sampling::Nodes || body.is_rigid() {
-        return none;
-    }
-    let start = body.start();
-    let placed: Vec<SlavePoint> = sites.iter().map(|site| body.placed(&start, site)).collect();
-    // A node is moved by unknowns of its own.
-    let mut at = BTreeMap::<Vec<u32>, Vec<usize>>::new();
-    for (k, point) in placed.iter().enumerate().filter(|(_, point)| point.outward.is_some()) {
-        at.entry(point.functions.iter().map(|f| f.unknown).collect()).or_default().push(k);
-    }
-    let mut out = none;
-    for list in at.values().filter(|list| list.len() > 1) {
-        for k in list {
-            let same = |other: &&usize| *other != k && (placed[**other].x - placed[*k].x).norm() == 0.0;
-            out[*k] = list.iter().filter(same).map(|other| sites[*other]).collect();
-        }
-    }
-    out
 }

@@ -100,6 +100,8 @@ pub struct ContactShown {
 pub struct SystemShown {
     pub time: f64,
     pub bodies: Vec<Fields>,
+    /// By body of the system, where the points of solids are that their fields tell; empty of others.
+    pub placed: Vec<Vec<Vector<3>>>,
     pub contacts: Vec<ContactShown>,
     pub curves: Vec<CurveShown>,
     pub rigid: Vec<RigidShown>,
@@ -130,13 +132,14 @@ impl SystemShown {
         let mut shown = SystemShown {
             time: 0.0,
             bodies: Vec::new(),
+            placed: vec![Vec::new(); plan.system.bodies.len()],
             contacts: Vec::new(),
             curves: Vec::new(),
             rigid: Vec::new(),
             zones: Vec::new(),
             painted: "von_mises",
         };
-        for ((body, kind), state) in plan.system.bodies.iter().zip(&plan.kinds).zip(state) {
+        for (number, ((body, kind), state)) in plan.system.bodies.iter().zip(&plan.kinds).zip(state).enumerate() {
             match kind {
                 Kind::Curve { radius } => {
                     let fields = body.fields(state);
@@ -144,7 +147,11 @@ impl SystemShown {
                     shown.curves.push(CurveShown { is_rope, ..curve(body.name(), *radius, &fields) });
                     shown.bodies.push(of_body(body.name(), &fields));
                 }
-                Kind::Solid | Kind::Cells => shown.bodies.push(of_solid(body.name(), &body.fields(state))),
+                Kind::Solid | Kind::Cells => {
+                    let fields = body.fields(state);
+                    shown.placed[number] = fields.points.iter().zip(&fields.displacement).map(|(x, u)| x + u).collect();
+                    shown.bodies.push(of_solid(body.name(), &fields));
+                }
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);

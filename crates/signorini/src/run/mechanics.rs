@@ -282,7 +282,8 @@ impl Model for MechanicsModel {
     }
 
     fn audit(&mut self, step: &StepReport) -> Vec<Finding> {
-        self.audit.increment(&self.plan, (&self.state, &self.result), step)
+        let placed = self.last.as_ref().map_or(&[][..], |shown| &shown.placed);
+        self.audit.increment(&self.plan, (&self.state, &self.result), (step, placed))
     }
 
     fn force_bounds(&self) -> Vec<(String, ForceBounds)> {

@@ -41,7 +41,7 @@ impl SystemAudit {
         }
         let setting = self.setting.get_or_insert_with(|| setting(plan));
         let state = State {
-            bodies: placements(plan, setting, &start.bodies),
+            bodies: placements(plan, setting, &start.bodies, &[]),
             stored: stored(plan, &start),
             ..State::default()
         };
@@ -56,14 +56,14 @@ impl SystemAudit {
         &mut self,
         plan: &MechanicsPlan,
         (state, result): (&SystemState, &IncrementResult),
-        step: &StepReport,
+        (step, placed): (&StepReport, &[Vec<Point<3>>]),
     ) -> Vec<Finding> {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
         // Coefficients of friction may change with time.
         for (told, contact) in setting.contacts.iter_mut().zip(&plan.system.contacts) {
             told.law = contact.friction().map(|law| law_of(law, &plan.head.problem, contact.name()));
         }
-        let bodies = placements(plan, setting, &state.bodies);
+        let bodies = placements(plan, setting, &state.bodies, placed);
         let mut contacts: Vec<Vec<Touch>> =
             result.sites.iter().map(|sites| sites.iter().map(touch).collect()).collect();
         // Forces of rigid bodies in motion are means of an increment in which momenta change.
@@ -81,7 +81,7 @@ impl SystemAudit {
         let now = State {
             time: step.time,
             bodies,
-            way: result.way.iter().map(|bodies| placements(plan, setting, bodies)).collect(),
+            way: result.way.iter().map(|bodies| placements(plan, setting, bodies, &[])).collect(),
             contacts,
             forces,
             // Less what the method still owes of an increment that it could not correct at once.
@@ -114,7 +114,7 @@ impl SystemAudit {
     /// Goes on from a state that was saved, at its time.
     pub fn restore(&mut self, value: &Value, plan: &MechanicsPlan, state: &SystemState, time: f64) {
         let setting = self.setting.get_or_insert_with(|| setting(plan));
-        let bodies = placements(plan, setting, &state.bodies);
+        let bodies = placements(plan, setting, &state.bodies, &[]);
         self.before = restored(value, time, bodies).map(|before| (before, state.clone()));
     }
 }
@@ -265,14 +265,22 @@ fn stored(plan: &MechanicsPlan, start: &SystemState) -> Option<f64> {
     bodies.map(|(b, state)| b.internal(state, Order::First, &mut Contribution::new(b.unknowns())).ok()).sum()
 }
 
-/// Where the bodies are. What of a rope is on a winch is not shown: its points are taken anew.
-fn placements(plan: &MechanicsPlan, setting: &mut Setting, states: &[BodyState]) -> Vec<Placement> {
+/// Where the bodies are; `placed` are the points of solids where they are known. What of a rope is on a winch is not shown: its points are taken anew.
+fn placements(
+    plan: &MechanicsPlan,
+    setting: &mut Setting,
+    states: &[BodyState],
+    placed: &[Vec<Point<3>>],
+) -> Vec<Placement> {
     let mut out = Vec::new();
     for (k, (body, state)) in plan.system.bodies.iter().zip(states).enumerate() {
         out.push(match &plan.kinds[k] {
             Kind::Rigid { centre, .. } => {
                 let pose = rigid_body::Pose::of(state);
                 Placement::Moved(RigidMotion::new(pose.turn, *centre, pose.centre - centre))
+            }
+            Kind::Solid | Kind::Cells if placed.get(k).is_some_and(|points| !points.is_empty()) => {
+                Placement::Points(placed[k].clone())
             }
             kind => {
                 let fields = body.fields(state);

@@ -26,9 +26,11 @@ const ROUNDING: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
 const MOST_SOLVED: usize = 800_000;
-/// Part of them after which an increment with friction is cut: its state depends on the way to it, and shorter parts are a surer way
-/// than any other. The last one, which is not cut any more, is left enough to find out what is free.
-const SOON: usize = 8;
+/// Part of them after which an increment with friction is cut, and to what part of itself: its state depends on the way to it, and
+/// shorter parts are a surer way than any other. After three cuts the last part, which is not cut any more, is left enough iterations
+/// to find out what is free.
+const SOON: usize = 5;
+const CUT_SOON: f64 = CUT * CUT;
 
 /// What decides how increments are cut, from one to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -221,7 +223,7 @@ impl MechanicsModel {
                     let remedy = slides.unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
-                Err(IncrementError::Interrupted) if is_cut_soon && !progress.interrupted() => size = part * CUT,
+                Err(IncrementError::Interrupted) if is_cut_soon && !progress.interrupted() => size = part * CUT_SOON,
                 Err(error) => {
                     let curable = !matches!(
                         error,

@@ -98,7 +98,7 @@ impl System {
     }
 
     /// Whether there is friction.
-    pub fn has_friction(&self) -> bool {
+    pub(crate) fn has_friction(&self) -> bool {
         self.contacts.iter().any(|contact| contact.friction().is_some())
     }
 

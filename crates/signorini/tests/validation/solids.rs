@@ -160,7 +160,7 @@ fn errors_and_large_strains_are_told() {
     let found = summary(example("hertz"), &set(&[]));
     let step = last_step(&found);
     let estimate = at(step, "/contacts/touch/error_estimate/area");
-    assert!((at(step, "/contacts/touch/area") - 2.444551).abs() < estimate && estimate < 0.01, "{estimate}");
+    assert!((at(step, "/contacts/touch/area") - 2.444551).abs() < estimate && estimate < 0.02, "{estimate}");
     assert!(found["verdict"].as_str().is_some_and(|v| v.contains("over length 2.439 ± 1e-2")), "{}", found["verdict"]);
     let slides = summary(
         example("hertz"),
@@ -168,13 +168,13 @@ fn errors_and_large_strains_are_told() {
     );
     let contact = &last_step(&slides)["contacts"]["touch"];
     let estimate = at(contact, "/error_estimate/area");
-    assert!((at(contact, "/area") - 2.444551).abs() < estimate && estimate < 0.01, "sliding: {estimate}");
+    assert!((at(contact, "/area") - 2.444551).abs() < estimate && estimate < 0.02, "sliding: {estimate}");
     // The finer functions of linear cells stand on curves of degree 2 too, not on the facets.
     let linear = [("bodies.block.solid.degree", "1".to_string()), ("steps", "[{ to = 1.0 }]".to_string())];
     let linear = summary(example("hertz"), &set(&linear));
     let contact = &last_step(&linear)["contacts"]["touch"];
     let estimate = at(contact, "/error_estimate/max_pressure");
-    assert!((at(contact, "/max_pressure") - 13.5745).abs() < estimate && estimate < 0.1, "linear: {estimate}");
+    assert!((at(contact, "/max_pressure") - 13.5745).abs() < estimate && estimate < 0.2, "linear: {estimate}");
     let strained = |v: &Value| v["warnings"].to_string().contains("the strain is not small: ");
     assert!(!strained(&found) && strained(&summary(example("punch"), &set(&[]))));
 }

@@ -26,11 +26,6 @@ const ROUNDING: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
 const MOST_SOLVED: usize = 800_000;
-/// Part of them after which an increment with friction is cut, and to what part of itself: its state depends on the way to it, and
-/// shorter parts are a surer way than any other. After three cuts the last part, which is not cut any more, is left enough iterations
-/// to find out what is free.
-const SOON: usize = 5;
-const CUT_SOON: f64 = CUT * CUT;
 
 /// What decides how increments are cut, from one to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -152,13 +147,11 @@ impl MechanicsModel {
             let part = target - reached;
             let mut seen = Vec::new();
             let mut is_given_up = false;
-            let is_cut_soon = part > smallest && self.plan.system.has_friction();
-            let most_of_part = if is_cut_soon { most / SOON } else { most };
             let mut report = |iteration: usize, residual: f64| {
                 tell_iteration(progress, index, target, (iteration, residual));
                 seen.push(residual);
                 is_given_up = total.residuals.len() + seen.len() - spent >= most;
-                !is_given_up && seen.len() < most_of_part && !progress.interrupted()
+                !is_given_up && !progress.interrupted()
             };
             let kept = if may_be_rejected { self.plan.system.histories() } else { Vec::new() };
             let found = self.plan.system.solve(&self.state, target, &mut report);
@@ -223,7 +216,6 @@ impl MechanicsModel {
                     let remedy = slides.unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
-                Err(IncrementError::Interrupted) if is_cut_soon && !progress.interrupted() => size = part * CUT_SOON,
                 Err(error) => {
                     let curable = !matches!(
                         error,

@@ -1,6 +1,6 @@
 //! Which faces of whole bodies may touch each other: of two thin bodies that lie on each other only those between them.
 
-use super::within::{Within, vertices};
+use super::within::{Within, around, vertices};
 use crate::body::{Body, PlaceError};
 use crate::part::Part;
 use crate::points::Master;
@@ -8,7 +8,7 @@ use crate::surface::{Faces, Surface};
 use rayon::prelude::*;
 use signorini_contact::{ContactSurface, is_facing};
 use signorini_geometry::{Point, Vector};
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 /// The faces of both sides that may touch; all of a side where nothing else is said.
 #[derive(Clone, Debug, Default)]
@@ -92,19 +92,16 @@ const SAME_SIDE: f64 = 0.1;
 fn gone_on(surface: &dyn Surface, from: &[bool]) -> Vec<bool> {
     let corners = vertices(surface);
     let normals: Vec<Vector<3>> = centres(surface).iter().map(|(_, n)| n.try_normalize(0.0).unwrap_or(*n)).collect();
-    let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (face, list) in corners.iter().enumerate() {
-        list.iter().for_each(|v| around.entry(*v).or_default().push(face));
-    }
+    let around = around(&corners);
     // The normal of the face from which each is reached first.
     let mut reached: Vec<Option<Vector<3>>> = from.iter().zip(&normals).map(|(is, n)| is.then_some(*n)).collect();
     let mut front: VecDeque<usize> = (0..from.len()).filter(|face| from[*face]).collect();
     while let Some(face) = front.pop_front() {
-        for next in corners[face].iter().filter_map(|v| around.get(v)).flatten() {
-            let side = reached[face].filter(|side| reached[*next].is_none() && side.dot(&normals[*next]) > SAME_SIDE);
+        for next in corners[face].iter().filter_map(|v| around.get(v)).flatten().map(|next| *next as usize) {
+            let side = reached[face].filter(|side| reached[next].is_none() && side.dot(&normals[next]) > SAME_SIDE);
             if side.is_some() {
-                reached[*next] = side;
-                front.push_back(*next);
+                reached[next] = side;
+                front.push_back(next);
             }
         }
     }

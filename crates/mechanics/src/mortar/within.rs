@@ -22,10 +22,7 @@ impl Within {
     /// Of two groups of faces of one body; `is_one` if they are the same.
     pub fn new(slave: &dyn Surface, master: &dyn Surface, is_one: bool) -> Self {
         let [own, other] = [slave, master].map(vertices);
-        let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (face, list) in other.iter().enumerate() {
-            list.iter().for_each(|v| around.entry(*v).or_default().push(face as u32));
-        }
+        let around = around(&other);
         let near = |list: &Vec<u32>| {
             let mut near: Vec<u32> = list.iter().filter_map(|v| around.get(v)).flatten().copied().collect();
             near.sort_unstable();
@@ -65,6 +62,16 @@ impl Within {
     }
 }
 
+/// The faces around each vertex, by the vertices of all faces.
+pub(super) fn around(faces: &[Vec<u32>]) -> BTreeMap<u32, Vec<u32>> {
+    let mut out: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (face, list) in faces.iter().enumerate() {
+        list.iter().for_each(|v| out.entry(*v).or_default().push(face as u32));
+    }
+    out
+}
+
+/// The vertices of every face.
 pub(super) fn vertices(surface: &dyn Surface) -> Vec<Vec<u32>> {
     fn of<const D: usize>(faces: &dyn ContactSurface<D>) -> Vec<Vec<u32>> {
         (0..faces.face_count()).map(|face| faces.vertices(face)).collect()

@@ -1,5 +1,6 @@
 //! The independent check of what was found: states as plain data for `signorini-audit`, and what its findings come to.
 
+mod forces;
 mod report;
 pub mod system;
 

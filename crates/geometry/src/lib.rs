@@ -37,6 +37,7 @@ pub mod height_field;
 pub mod implicit;
 pub mod implicit_surface;
 pub mod jet;
+mod looking;
 pub mod mass_properties;
 pub mod measures;
 pub mod mesh;
@@ -58,6 +59,7 @@ pub use aabb::Aabb;
 pub use closed_curve::{ClosedCurve, CurvePoint};
 pub use implicit::{Ellipsoid, HalfSpace, ImplicitShape};
 pub use jet::{Jet, Real};
+pub use looking::Looking;
 pub use spline::PeriodicBasis;
 
 /// A vector of the plane or of space.

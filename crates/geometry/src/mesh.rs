@@ -12,7 +12,7 @@ use crate::scale::unit_for;
 use crate::shape::error::{self, ShapeError};
 use crate::shape::surface::Surface;
 use crate::straight::{closest_on_triangle, segments};
-use crate::{Aabb, Point, Vector};
+use crate::{Aabb, Looking, Point, Vector};
 
 /// What the triangles of a mesh make together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -281,6 +281,28 @@ impl TriangleMesh {
             }
         }
         distinct
+    }
+
+    /// The gap of a point to the nearest triangle that it is under and looks at, with the normal of that.
+    pub fn facing(&self, p: &Point<3>, looking: &Looking) -> Option<(f64, Vector<3>)> {
+        let mut best: Option<(f64, usize)> = None;
+        let limit = (looking.within + looking.rounding()).powi(2);
+        self.bvh.nearest(p, limit, |k| {
+            let least = best.map_or(limit, |(gap, _)| gap * gap);
+            let normal = &self.face_normals[k];
+            if !looking.sees(normal) {
+                return least;
+            }
+            let corners = self.corners(k);
+            let apart = p - self.position(k, closest_on_triangle(p, &corners).0);
+            let gap = normal.dot(&(p - corners[0]));
+            if !looking.is_under(&apart, normal) || best.is_some_and(|(g, of)| (g.abs(), of) <= (gap.abs(), k)) {
+                return least;
+            }
+            best = Some((gap, k));
+            gap * gap
+        });
+        best.map(|(gap, k)| (gap, self.face_normals[k]))
     }
 
     fn foot(

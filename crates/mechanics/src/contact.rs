@@ -38,6 +38,7 @@ pub use partner::Pairing;
 use crate::body::{Body, BodyState, PlaceError};
 use crate::contact_law::ContactLaw;
 use crate::enforcement::Enforcement;
+use crate::inside;
 use crate::nitsche::Stress;
 use crate::pair::{AxisChoice, NoPair, Pair, PairGeometry, Stuck};
 use crate::points::{Anchor, Direction, Master, MasterProjection, Order, Sampling, Site, SlavePoint};
@@ -57,6 +58,8 @@ pub struct Contact {
     pub restitution: f64,
     /// How far apart, or inside each other, points are looked at.
     pub reach: f64,
+    /// Distance of the sites.
+    spacing: f64,
     /// Where they are looked for.
     pub pairing: Pairing,
     partners: Partners,
@@ -138,6 +141,9 @@ impl Contact {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
         let beyond_edges = edges::beyond_edges(slave.1, &sites, sampling);
+        let start = slave.1.start();
+        let placed: Vec<SlavePoint> = sites.iter().map(|site| slave.1.placed(&start, site)).collect();
+        let spacing = inside::distance(&placed);
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
         let enforcement = if both_rigid { enforcement.between_rigid_bodies() } else { enforcement };
         // The gap to a rigid body is known anywhere.
@@ -151,6 +157,7 @@ impl Contact {
             axis: AxisChoice::Material,
             restitution: 0.0,
             reach,
+            spacing,
             pairing: Pairing::Now,
             partners: Partners::new(),
             memory: vec![SiteMemory::default(); sites.len()],
@@ -239,7 +246,7 @@ impl Contact {
                 let reach = self.reach + placed.radius;
                 master.along(&placed.x, reach).or_else(|| master.nearest(&placed.x, reach, None))
             }
-            _ => master.nearest(&placed.x, self.reach + placed.radius, except),
+            _ => placed.met(master, (self.reach, || self.spacing), except),
         };
         let Some(met) = met else { return (placed, None) };
         if self.is_met_beyond_an_edge(k, sides.slave, (&placed, &met)) {

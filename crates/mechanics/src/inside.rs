@@ -58,7 +58,7 @@ fn depths(master: &dyn Master, sites: &[SlavePoint]) -> Vec<(Inside, bool)> {
 }
 
 /// How far sites are apart, about.
-fn distance(sites: &[SlavePoint]) -> f64 {
+pub(crate) fn distance(sites: &[SlavePoint]) -> f64 {
     let Some(first) = sites.first() else { return 0.0 };
     let (low, high) = sites.iter().fold((first.x, first.x), |(l, h), s| (l.inf(&s.x), h.sup(&s.x)));
     let in_space = sites.iter().any(|s| s.functions.iter().any(|f| f.value.z != 0.0));

@@ -55,6 +55,7 @@ pub mod iterative;
 mod linear_bodies;
 mod linear_constraint;
 pub mod linear_solver;
+mod met;
 pub mod mortar;
 mod moving;
 mod nitsche;

@@ -13,6 +13,7 @@ pub use crate::interaction::StatePath;
 
 use crate::body::{Body, BodyState};
 use crate::contact::Contact;
+use crate::met;
 use crate::part::Part;
 use crate::points::Master;
 use crate::rigid_body::Pose;
@@ -63,6 +64,12 @@ fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
     Some((gap - radius, normal))
 }
 
+/// What a point of a surface with an outward normal meets: beside an edge the face that it looks at.
+fn looked_at(master: &dyn Master, x: &Point<3>, outward: Vector<3>, spacing: f64) -> Option<Meeting> {
+    let nearest = master.nearest(x, f64::INFINITY, None)?;
+    met::looked_at(master, (x, Some(outward)), &nearest, || spacing).unwrap_or(nearest).gap(x)
+}
+
 /// A deformable master on a way: a surface that moves is costly to search, so it is known at a few stages, no farther apart
 /// than a quarter of what the sites see.
 struct Stages {
@@ -97,8 +104,13 @@ impl Stages {
     }
 }
 
-/// The share of a way on which no point of a slave passes through its master.
-pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<TrackedPoint>, path: StatePath<'_>) -> f64 {
+/// The share of a way on which no point of a slave passes through its master; `outward` tells the normals of points of surfaces at
+/// the start of the way.
+pub(crate) fn share_of_way(
+    parts: [&Part; 2],
+    (tested, outward): (Vec<TrackedPoint>, impl Fn(usize) -> Option<Vector<3>>),
+    path: StatePath<'_>,
+) -> f64 {
     let [slave, master] = [parts[0].body, parts[1].body];
     let bodies = path.from.bodies;
     let is_rigid = bodies[master].is_rigid();
@@ -113,7 +125,7 @@ pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<TrackedPoint>, path: S
     let stages = Stages::new(path, master, of_master, tested.iter().map(|point| point.spacing));
     let known: MasterStages<'_> = stages.states.iter().map(|_| OnceCell::new()).collect();
     let mut share = 1.0f64;
-    for point in tested {
+    for (number, point) in tested.into_iter().enumerate() {
         let TrackedPoint { from, to, radius, is_surface, spacing } = point;
         let length = (to - from).norm() + of_master;
         // Surfaces of two solids see each other only where they face each other.
@@ -128,14 +140,19 @@ pub(crate) fn share_of_way(parts: [&Part; 2], tested: Vec<TrackedPoint>, path: S
         if is_short && meeting(last.as_ref(), &to, radius).is_none_or(|end| end.1.dot(&start.1) > 0.0) {
             continue;
         }
+        let outward = if is_surface { outward(number) } else { None };
         let met = |t: f64| -> Option<Meeting> {
             let x = from + (to - from) * t;
+            let with = |master: &dyn Master| match outward {
+                Some(outward) => looked_at(master, &x, outward, spacing),
+                None => meeting(master, &x, radius),
+            };
             if !path.moves(master) {
-                return meeting(first.as_ref(), &x, radius);
+                return with(first.as_ref());
             }
             if is_rigid {
                 let state = path.at(master, t);
-                return meeting(bodies[master].master(on, &state).ok()?.as_ref(), &x, radius);
+                return with(bodies[master].master(on, &state).ok()?.as_ref());
             }
             meeting(stages.at((bodies[master].as_ref(), on), &known, t)?, &x, radius)
         };
@@ -150,7 +167,9 @@ impl Contact {
         if !(path.moves(self.slave.body) || path.moves(self.master.body)) {
             return 1.0;
         }
-        share_of_way([&self.slave, &self.master], self.tested(path), path)
+        let (body, state) = path.from.side(&self.slave);
+        let outward = |k: usize| self.sites().get(k).and_then(|site| body.placed(state, site).outward);
+        share_of_way([&self.slave, &self.master], (self.tested(path), outward), path)
     }
 
     /// The points of the slave that are followed: its sites, and on a curve that is stretched on the way as many between

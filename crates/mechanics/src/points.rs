@@ -2,7 +2,7 @@
 
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
 use signorini_geometry::shape::SurfaceJet;
-use signorini_geometry::{Matrix, Point, Vector};
+use signorini_geometry::{Looking, Matrix, Point, Vector};
 use std::sync::Arc;
 
 /// How far derivatives are wanted.
@@ -220,6 +220,11 @@ pub trait Master: Sync {
     /// The point nearest to `x`, unless it is farther than `reach`. With `except`, a site of the same body, what lies
     /// next to that site along the body is left out: contact of a body with itself.
     fn nearest(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<MasterProjection>;
+
+    /// Of a body with edges, the point under `x` on the nearest face that `x`, inside of it, looks at.
+    fn facing(&self, _x: &Point<3>, _looking: &Looking) -> Option<MasterProjection> {
+        None
+    }
 
     /// All places that a ball about `x` may touch at once, the nearest first: of rigid bodies that curve around it.
     fn places(&self, x: &Point<3>) -> Vec<MasterProjection> {

@@ -19,7 +19,7 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use signorini_geometry::polyhedra::Placed;
 use signorini_geometry::rigid::RigidMotion;
 use signorini_geometry::rigid_shape::{GapJet, RigidShape};
-use signorini_geometry::{Matrix, Point, Vector};
+use signorini_geometry::{Looking, Matrix, Point, Vector};
 use std::sync::Arc;
 
 /// A motion by time.
@@ -470,6 +470,12 @@ impl Master for RigidMaster<'_> {
         let (own, rotation) = self.seen(x);
         let jet = self.body.shape.gap(&own);
         (jet.gap.abs() <= reach).then(|| self.met(&own, &rotation, jet))
+    }
+
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<MasterProjection> {
+        let (own, rotation) = self.seen(x);
+        let looking = Looking { outward: rotation.transpose() * looking.outward, ..*looking };
+        self.body.shape.facing(&own, &looking).map(|jet| self.met(&own, &rotation, jet))
     }
 
     fn gap(&self, x: &Point<3>, reach: f64, _: Option<&Site>) -> Option<f64> {

@@ -17,7 +17,7 @@ use crate::shapes::{HalfSpace, spatial};
 use rayon::prelude::*;
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::shape::{CurveJet, SurfaceJet};
-use signorini_geometry::{Aabb, ImplicitShape, Matrix, Point, Vector};
+use signorini_geometry::{Aabb, ImplicitShape, Looking, Matrix, Point, Vector};
 use signorini_mechanics::pair::axis;
 use signorini_mechanics::{Anchor, Foot, Function, Master, MasterProjection, MaterialPoint, Site};
 use std::ops::Range;
@@ -80,17 +80,15 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         self.now.get_or_init(|| with_tree(self.points.clone().map(|k| self.place(k)).collect()))
     }
 
-    /// The nearest quadrature point; of the boundary itself one across a gap from a site.
-    fn nearest_point(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<usize> {
-        let own = except.map(|site| &self.solid.points[site.patch as usize]);
+    /// The nearest of the quadrature points that count.
+    fn nearest_point(&self, x: &Point<3>, reach: f64, counts: impl Fn(&crate::cell::Site<D>) -> bool) -> Option<usize> {
         let limit = reach * reach;
         let mut best: Option<(f64, usize)> = None;
         let (now, bvh) = self.now();
         bvh.nearest(x, limit, |k| {
             let least = best.map_or(limit, |b| b.0);
             let number = self.points.start + k;
-            let other = &self.solid.points[number];
-            if own.is_some_and(|own| !faces(own, &other.x, &other.normal)) {
+            if !counts(&self.solid.points[number]) {
                 return least;
             }
             let square = (now[k] - x).norm_squared();
@@ -125,13 +123,14 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     /// The closest point; of the boundary itself one that faces a site across a gap, as the quadrature point did from which
     /// it was looked for: a search along the boundary may end behind the material beside the gap.
     fn met(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<(usize, OnSheets<D>)> {
-        let number = self.nearest_point(x, reach, except)?;
+        let own = except.map(|site| &self.solid.points[site.patch as usize]);
+        let number =
+            self.nearest_point(x, reach, |other| own.is_none_or(|own| faces(own, &other.x, &other.normal)))?;
         let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
         let normal = match &found.outward {
             Some(normal) => *normal,
             None => found.active.iter().filter_map(|s| s.gradient(&found.at.x).try_normalize(0.0)).sum(),
         };
-        let own = except.map(|site| &self.solid.points[site.patch as usize]);
         own.is_none_or(|own| faces(own, &found.at.x, &normal)).then_some((number, found))
     }
 
@@ -235,6 +234,15 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
         let (number, found) = self.met(x, reach, except)?;
         let is_within = (spatial(&found.at.now()) - x).norm() <= reach;
         is_within.then(|| MasterProjection::Foot(Box::new(self.foot(x, number, &found))))
+    }
+
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<MasterProjection> {
+        let looks = |other: &crate::cell::Site<D>| looking.sees(&spatial(&other.normal));
+        let number = self.nearest_point(x, f64::INFINITY, looks)?;
+        let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
+        let outward = self.outward(&found)?;
+        let is_under = looking.is_under(&(x - spatial(&found.at.now())), &outward);
+        (is_under && looking.sees(&outward)).then(|| MasterProjection::Foot(Box::new(self.foot(x, number, &found))))
     }
 
     fn gap(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<f64> {

@@ -5,7 +5,7 @@ use crate::mass_properties::MassProperties;
 use crate::mesh::TriangleMesh;
 use crate::polyhedra::Features;
 use crate::shape::ShapeError;
-use crate::{Aabb, Matrix, Point, Vector};
+use crate::{Aabb, Looking, Matrix, Point, Vector};
 
 /// The faces of a block, by the numbers of its corners: bit `i` of a number tells on which side the corner is along axis `i`.
 const FACES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -73,6 +73,10 @@ fn mesh(centre: &Point<3>, edges: &Vector<3>, rotation: &Matrix<3>) -> Result<Tr
 impl RigidShape for Block {
     fn gap(&self, x: &Point<3>) -> GapJet<3> {
         self.body.gap(x)
+    }
+
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<GapJet<3>> {
+        self.body.facing(x, looking)
     }
 
     fn centre(&self) -> Point<3> {

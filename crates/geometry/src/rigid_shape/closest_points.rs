@@ -4,7 +4,7 @@ use super::{GapJet, RigidShape, unit};
 use crate::closest::{Query, closest, gap_hessian, signed_gap};
 use crate::frame::SurfaceFrame;
 use crate::shape::Shape;
-use crate::{Point, Vector};
+use crate::{Looking, Point, Vector};
 
 /// Whether the normals of a surface point out of the body or into it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,15 @@ impl RigidShape for ClosestPoints {
         let along = (gap.abs() > scale).then(|| d * (1.0 / gap));
         let normal = along.or_else(frame).unwrap_or_else(|| unit(d, Vector::<3>::z()));
         GapJet { gap, normal, hessian: gap_hessian(&found, shape, &normal) }
+    }
+
+    /// Of a triangle mesh.
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<GapJet<3>> {
+        let Shape::Mesh(mesh) = &self.shape else { return None };
+        if self.normals == Normals::Inward {
+            return None;
+        }
+        mesh.facing(x, looking).map(|(gap, normal)| GapJet::flat(gap, normal))
     }
 
     /// The origin: the file of a surface says no other.

@@ -51,7 +51,7 @@ pub use torus::Torus;
 use crate::height_field::{HeightField, View};
 use crate::mass_properties::MassProperties;
 use crate::polyhedra::Features;
-use crate::{Aabb, Jet, Point, Vector};
+use crate::{Aabb, Jet, Looking, Point, Vector};
 use std::sync::Arc;
 
 /// A body that does not deform.
@@ -71,6 +71,11 @@ pub trait RigidShape: Send + Sync {
     /// itself: no ball that is in nothing is nearer to any of them than its radius.
     fn around(&self, _x: &Point<3>) -> Vec<GapJet<3>> {
         Vec::new()
+    }
+
+    /// The gap to the nearest face that a point inside looks at, of a body with edges: beside an edge the nearest face may be another.
+    fn facing(&self, _x: &Point<3>, _looking: &Looking) -> Option<GapJet<3>> {
+        None
     }
 
     /// The point about which the body turns.

@@ -4,7 +4,7 @@ use super::{ClosestPoints, GapJet, Normals, RigidShape};
 use crate::mass_properties::MassProperties;
 use crate::mesh::TriangleMesh;
 use crate::polyhedra::Features;
-use crate::{Aabb, Point};
+use crate::{Aabb, Looking, Point};
 
 /// The body within a closed triangle mesh.
 #[derive(Clone, Debug)]
@@ -30,6 +30,10 @@ impl Polyhedron {
 impl RigidShape for Polyhedron {
     fn gap(&self, x: &Point<3>) -> GapJet<3> {
         self.surface.gap(x)
+    }
+
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<GapJet<3>> {
+        self.surface.facing(x, looking)
     }
 
     fn centre(&self) -> Point<3> {

@@ -2,13 +2,10 @@
 
 use super::Contact;
 use crate::body::{Body, BodyState};
+use crate::met::MUCH_MORE;
 use crate::points::{MasterProjection, Sampling, Site, SlavePoint};
 use signorini_geometry::Vector;
 use std::collections::BTreeMap;
-
-/// How much more a face looks at something than another one, by the cosines of their normals, that alone meets it: at a right angle
-/// from 27 degrees on, while faces of a tip that are alike both meet what they touch.
-const MUCH_MORE: f64 = 2.0;
 
 impl Contact {
     /// Whether a face beyond an edge of the slave looks at what a site meets much more than its own: along its own the gap would be

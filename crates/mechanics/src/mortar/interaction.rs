@@ -404,7 +404,8 @@ impl Passing for Mortar {
             is_surface: true,
             spacing,
         };
-        Ok(share_of_way([&self.slave, &self.master], from.iter().zip(&to).map(point).collect(), path))
+        let tested = from.iter().zip(&to).map(point).collect();
+        Ok(share_of_way([&self.slave, &self.master], (tested, |k: usize| from[k].outward), path))
     }
 
     fn inside(&self, at: Bodies<'_>, is_start: bool) -> Result<Option<Inside>, PlaceError> {

@@ -14,7 +14,7 @@ use signorini_fem::{CellShape, Local, RationalBasis};
 use signorini_geometry::bvh::Bvh;
 use signorini_geometry::closest::{FeatureKind, Projection, Query, closest};
 use signorini_geometry::shape::{Curve, CurveJet, Shape, ShapeError, SurfaceJet};
-use signorini_geometry::{Aabb, Matrix, Point, Vector};
+use signorini_geometry::{Aabb, Looking, Matrix, Point, Vector};
 use signorini_mechanics::{
     Anchor, Direction, Foot, Function, Master, MasterProjection, MaterialPoint, NormalField, Site,
 };
@@ -284,6 +284,28 @@ impl<const D: usize> Master for SurfaceMaster<'_, D> {
         let (k, found) = best?;
         let feature = found.closest.b.feature.kind;
         Some(MasterProjection::Foot(Box::new(self.foot(k, coordinates(&found), x, feature))))
+    }
+
+    fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<MasterProjection> {
+        let point = Shape::Point(*x);
+        let limit = (looking.within + looking.rounding()).powi(2);
+        let mut best: Option<(f64, usize, Foot)> = None;
+        self.bvh.nearest(x, limit, |k| {
+            let least = best.as_ref().map_or(limit, |(square, ..)| *square);
+            let found = closest(&point, &self.shapes[k], &Query::default());
+            let square = found.distance().powi(2);
+            if square > least || best.as_ref().is_some_and(|(b, of, _)| (*b, *of) < (square, k)) {
+                return least;
+            }
+            let foot = self.foot(k, coordinates(&found), x, FeatureKind::Interior);
+            let under = |normal: &Vector<3>| looking.sees(normal) && looking.is_under(&(x - foot.jet.x), normal);
+            if !foot.outward.as_ref().is_some_and(under) {
+                return least;
+            }
+            best = Some((square, k, foot));
+            square
+        });
+        best.map(|(.., foot)| MasterProjection::Foot(Box::new(foot)))
     }
 
     fn is_faceted(&self) -> bool {

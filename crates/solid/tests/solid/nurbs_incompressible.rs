@@ -137,6 +137,7 @@ fn check_tangent<const D: usize>(degree: usize, cells: [usize; D], law: &StressL
         at.blocks.len()
     );
     assert!(at.blocks.len() < cells.iter().product());
+    assert!(at.blocks.iter().map(|(unknowns, _)| unknowns).eq(&body.cliques()));
     assert!(error < 1e-7 && of_energy < 1e-6 && asymmetry < 1e-12, "{error:e} {of_energy:e} {asymmetry:e}");
 }
 
@@ -157,7 +158,7 @@ fn splines_that_hardly_compress_pass_the_patch_test() {
         let upper = brick::<2>(([0.0, 0.5], [1.0, 1.0]), degree, [7, 3], (0.2, 0.0));
         let error = patch([lower, upper], degree, (&law, 0.49999), 6);
         println!("degree {degree} {}: {error:.1e}", law.name());
-        assert!(error < 1e-9, "degree {degree} {}: {error:e}", law.name());
+        assert!(error < 1e-10, "degree {degree} {}: {error:e}", law.name());
     }
 }
 
@@ -185,18 +186,17 @@ fn pushed(mesh: Mesh<2>, degree: usize, nu: f64, (law, depth): (&StressLaw, f64)
 #[test]
 fn contact_pressures_on_nearly_incompressible_splines_are_smooth() {
     let nu = 0.4999;
-    for law in [StressLaw::LinearElastic, NEO_HOOKE] {
-        let lines = [(2.0, 48), (1.0, 24)].map(|(l, n)| (0..=n).map(|k| l * k as f64 / n as f64).collect::<Vec<f64>>());
-        let cells = signorini_fem::block::block::<2>(&lines, 1, |x| x);
-        let (wanted, reference) = pushed(cells, 2, nu, (&law, 0.1));
-        for degree in [2, 3] {
-            let mesh = brick::<2>(([0.0, 0.0], [2.0, 1.0]), degree, [36, 18], (0.0, 0.0));
-            let (found, pressures) = pushed(mesh, degree, nu, (&law, 0.1));
-            let most = |list: &[(f64, f64)]| list.iter().map(|p| p.1).fold(0.0, f64::max);
-            let errors = [found / wanted, most(&pressures) / most(&reference)].map(|r| r - 1.0);
-            println!("degree {degree} {}: {errors:.4?} {pressures:.4?}", law.name());
-            assert!(errors[0].abs() < 5e-3 && errors[1].abs() < 2e-2, "degree {degree} {}: {errors:?}", law.name());
-            assert!(pressures.windows(2).all(|p| p[1].1 < p[0].1), "{pressures:?}");
-        }
+    let law = StressLaw::LinearElastic;
+    let lines = [(2.0, 48), (1.0, 24)].map(|(l, n)| (0..=n).map(|k| l * k as f64 / n as f64).collect::<Vec<f64>>());
+    let cells = signorini_fem::block::block::<2>(&lines, 1, |x| x);
+    let (wanted, reference) = pushed(cells, 2, nu, (&law, 0.1));
+    for degree in [2, 3] {
+        let mesh = brick::<2>(([0.0, 0.0], [2.0, 1.0]), degree, [36, 18], (0.0, 0.0));
+        let (found, pressures) = pushed(mesh, degree, nu, (&law, 0.1));
+        let most = |list: &[(f64, f64)]| list.iter().map(|p| p.1).fold(0.0, f64::max);
+        let errors = [found / wanted, most(&pressures) / most(&reference)].map(|r| r - 1.0);
+        println!("degree {degree} {}: {errors:.4?} {pressures:.4?}", law.name());
+        assert!(errors[0].abs() < 5e-3 && errors[1].abs() < 2e-2, "degree {degree} {}: {errors:?}", law.name());
+        assert!(pressures.windows(2).all(|p| p[1].1 < p[0].1), "{pressures:?}");
     }
 }

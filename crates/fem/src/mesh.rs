@@ -42,6 +42,9 @@ struct Cell {
     first: u32,
 }
 
+/// Where a cell lies in a macro cell: for each direction the coordinates of its ends, those of the macro cell from -1 to 1.
+pub type Window = [[f64; 2]; 3];
+
 /// A mesh of a body in `D` dimensions. The cells of a spline are its spans: their nodes are control points, and further nodes are
 /// at their vertices.
 #[derive(Clone, Debug)]
@@ -52,6 +55,7 @@ pub struct Mesh<const D: usize> {
     cells: Vec<Cell>,
     cell_nodes: Vec<u32>,
     groups: BTreeMap<String, Group>,
+    macro_cells: Vec<Vec<(u32, Window)>>,
 }
 
 /// A mesh that cannot be used.
@@ -87,6 +91,7 @@ impl<const D: usize> Mesh<D> {
             cells: Vec::new(),
             cell_nodes: Vec::new(),
             groups: BTreeMap::new(),
+            macro_cells: Vec::new(),
         }
     }
 
@@ -116,6 +121,16 @@ impl<const D: usize> Mesh<D> {
         self.cell_nodes.extend_from_slice(controls);
         self.cell_nodes.extend_from_slice(vertices);
         (self.cells.len() - 1) as u32
+    }
+
+    /// Adds cells, with their places in the whole, on which dilatations are projected together.
+    pub fn add_macro_cell(&mut self, cells: impl IntoIterator<Item = (u32, Window)>) {
+        self.macro_cells.push(cells.into_iter().collect());
+    }
+
+    /// Cells on which dilatations are projected together: of splines all, each once; of other meshes none.
+    pub fn macro_cells(&self) -> &[Vec<(u32, Window)>] {
+        &self.macro_cells
     }
 
     /// Whether the cells are spans of splines.

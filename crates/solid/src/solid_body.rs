@@ -19,6 +19,7 @@ mod loads;
 mod mass;
 mod master;
 mod moments;
+mod pieces;
 mod projection;
 mod spatial;
 mod surface;
@@ -32,6 +33,7 @@ use crate::body::Bodies;
 use crate::stiffness::{Table, stiffness};
 use edge::EdgeCurve;
 use faces::Faces;
+use pieces::Pieces;
 use rayon::prelude::*;
 use signorini_fem::{DofMap, Group, Mesh, MeshError};
 use signorini_geometry::{Aabb, Point};
@@ -75,7 +77,8 @@ pub struct SolidBody<const D: usize> {
     edges: BTreeMap<String, EdgeCurve>,
     /// Quadrature tables by the kinds of map and basis of a cell.
     tables: HashMap<(usize, usize), Table>,
-    /// The cells whose forces it adds: all, but where other processes have the others.
+    pieces: Pieces,
+    /// The pieces whose forces it adds: all, but where other processes have the others.
     kept: Vec<usize>,
     /// Unknowns and stiffness of each of them, of linear laws.
     stiffness: Vec<(Vec<u32>, Vec<f64>)>,
@@ -138,6 +141,7 @@ impl<const D: usize> SolidBody<D> {
                 .or_insert_with(|| Table::new(&body.mesh, &body.dofs, cell));
         }
         check_material(body, &tables, &material)?;
+        let pieces = Pieces::new(&body.mesh, &body.dofs, &elastic, space);
         let position = hold::position(&bodies);
         let faces = Faces::new(&bodies, &groups);
         let bounds = Aabb::around(body.mesh.nodes().iter().copied()).expect("a mesh has nodes");
@@ -149,6 +153,7 @@ impl<const D: usize> SolidBody<D> {
             faces,
             edges: BTreeMap::new(),
             tables,
+            pieces,
             kept: Vec::new(),
             stiffness: Vec::new(),
             position,
@@ -157,7 +162,7 @@ impl<const D: usize> SolidBody<D> {
             density: None,
             heated: None,
         };
-        out.kept = (0..out.mesh().cell_count()).collect();
+        out.kept = (0..out.pieces.count()).collect();
         let points = (0..out.mesh().cell_count()).map(|cell| out.table(cell).points.len());
         out.history = History::new(out.law(), points);
         if out.law().is_linear() {
@@ -206,23 +211,22 @@ impl<const D: usize> SolidBody<D> {
         (unknowns, signs)
     }
 
-    /// The stiffness of all cells of a linear law.
+    /// The stiffness of all pieces of a linear law.
     fn linear_stiffness(&self) -> Result<Vec<(Vec<u32>, Vec<f64>)>, SolidError> {
         let body = self.body();
         let rest = self.start();
-        let of = |cell: usize| {
-            let basis = body.dofs.basis(cell);
-            let matrix = if self.material.is_uniform_hooke() {
-                stiffness(&body.mesh, cell, self.table(cell), basis, &body.material, self.bodies.space)
-            } else {
-                self.tangent_of(cell, &rest)?
+        let of = |number: usize| {
+            let piece = self.piece(number);
+            let matrix = match *piece.cells {
+                [(cell, _)] if self.material.is_uniform_hooke() => {
+                    let (cell, space) = (cell as usize, self.bodies.space);
+                    stiffness(&body.mesh, cell, self.table(cell), body.dofs.basis(cell), &body.material, space)
+                }
+                _ => self.tangent_of(&piece, &rest)?,
             };
-            let (unknowns, signs) = self.unknowns_of(cell);
-            let n = unknowns.len();
-            let values = (0..n * n).map(|k| matrix[(k / n, k % n)] * signs[k / n] * signs[k % n]).collect();
-            Ok((unknowns, values))
+            Ok(piece.block(&matrix))
         };
-        (0..body.mesh.cell_count()).into_par_iter().map(of).collect()
+        (0..self.pieces.count()).into_par_iter().map(of).collect()
     }
 
     fn group(&self, on: Option<&str>) -> Result<&Group, PlaceError> {
@@ -421,7 +425,7 @@ impl<const D: usize> Inertial for SolidBody<D> {
 
 impl<const D: usize> Elimination for SolidBody<D> {
     fn cliques(&self) -> Vec<Vec<u32>> {
-        (0..self.mesh().cell_count()).map(|cell| self.unknowns_of(cell).0).collect()
+        (0..self.pieces.count()).map(|number| self.piece(number).unknowns).collect()
     }
 
     fn places(&self) -> Vec<[f64; 3]> {
@@ -434,10 +438,10 @@ impl<const D: usize> Elimination for SolidBody<D> {
     }
 
     fn keep_cells(&mut self, keep: &[bool]) -> bool {
-        let mut kept = self.kept.iter().map(|cell| keep[*cell]);
+        let mut kept = self.kept.iter().map(|piece| keep[*piece]);
         self.stiffness.retain(|_| kept.next().unwrap_or_default());
         self.stiffness.shrink_to_fit();
-        self.kept.retain(|cell| keep[*cell]);
+        self.kept.retain(|piece| keep[*piece]);
         true
     }
 }

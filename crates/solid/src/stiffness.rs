@@ -3,12 +3,13 @@
 //! `K = ∫ λ div u div v + 2μ ε(u):ε(v)`. On cells of degree one, and where the material hardly compresses, the
 //! divergence is replaced by its projection on polynomials of one degree less, discontinuous from cell to cell (for
 //! bilinear cells the mean dilatation of Nagtegaal, Parks & Rice 1974, for degree 2 the pair Q2/P1): the pressure has no
-//! more unknowns than the displacement can follow, and nothing locks. Triangles and tetrahedra of degree one cannot be
-//! helped in this way, and splines of degree 2 and more, whose cells have few functions of their own, must not be: for a material
-//! that hardly compresses they are better of a high degree.
+//! more unknowns than the displacement can follow, and nothing locks. Splines of degree 2 and more have few functions for each
+//! cell: there the polynomials are those of blocks of cells. Triangles and tetrahedra of degree one cannot be helped in this way.
 
 use nalgebra::{DMatrix, Matrix3};
 use signorini_fem::hierarchic::Values;
+use signorini_fem::mesh::Window;
+use signorini_fem::nurbs::macro_cells::macro_size;
 use signorini_fem::rules::rule;
 use signorini_fem::small::{determinant, inverse};
 use signorini_fem::{CellBasis, CellShape, DofMap, Local, Mesh};
@@ -17,6 +18,9 @@ use signorini_material::{Elastic, Space};
 
 /// Poisson's ratio from which the divergence is projected on cells of any degree.
 pub const NEARLY_INCOMPRESSIBLE: f64 = 0.4;
+
+/// The place of a cell that is no part of a block.
+pub(crate) const ALONE: Window = [[-1.0, 1.0]; 3];
 
 /// Functions at the quadrature points of one shape of cells.
 #[derive(Clone)]
@@ -78,10 +82,18 @@ fn points_of_rational<const D: usize>(mesh: &Mesh<D>, cell: usize) -> usize {
     (map.order() + 1..map.order() + MOST).find(|n| differs(n) <= EXACT * scale).unwrap_or(map.order() + MOST - 1)
 }
 
-/// Whether the divergence is projected on a cell.
+/// Whether the divergence is projected: on each cell, or on the blocks of cells that smooth splines of degree 2 and more need.
+///
+/// A polynomial on a block of `m` cells has the error of cells `m` times as large, the pressure of splines by themselves `λ/μ` times
+/// that of their cells. With errors of order `s` the projection is the better of the two beyond `λ/μ = m^s`: `s` is the degree
+/// where the pressure is smooth, but below 2 at corners and at edges of contact, where the pressure would oscillate.
 pub fn projects(basis: &CellBasis, material: &Elastic, space: Space) -> bool {
-    if space == Space::PlaneStress || basis.is_spline() && basis.degree() > 1 {
+    if space == Space::PlaneStress {
         return false;
+    }
+    if basis.is_spline() && basis.degree() > 1 {
+        let (lambda, mu) = material.lame(space);
+        return lambda > mu * (macro_size(basis.degree()) as f64).powi(2);
     }
     let nearly = material.poissons_ratio > NEARLY_INCOMPRESSIBLE;
     if basis.shape().is_tensor() { basis.degree() == 1 || nearly } else { basis.degree() > 1 && nearly }
@@ -207,7 +219,7 @@ pub(crate) fn stiffness<const D: usize>(
     }
     let weighted = at.weighted(&at.divergence);
     if projects(basis, material, space) {
-        let psi = pressures::<D>(basis, table);
+        let psi = pressures::<D>(basis, table, &ALONE);
         let mass = at.weighted(&psi) * psi.transpose();
         let moments = &weighted * psi.transpose();
         if let Some(factor) = mass.cholesky() {
@@ -239,11 +251,11 @@ pub(crate) fn traction<const D: usize>(
     let mut divergence: Vec<f64> = at.divergence.iter().copied().collect();
     if projects(basis, material, space) {
         let whole = Derivatives::new(mesh, cell, table, basis, space);
-        let psi = pressures::<D>(basis, table);
+        let psi = pressures::<D>(basis, table, &ALONE);
         let mass = whole.weighted(&psi) * psi.transpose();
         let moments = whole.weighted(&whole.divergence) * psi.transpose();
         if let Some(factor) = mass.cholesky() {
-            divergence = (moments * factor.solve(&pressures::<D>(basis, &here))).iter().copied().collect();
+            divergence = (moments * factor.solve(&pressures::<D>(basis, &here, &ALONE))).iter().copied().collect();
         }
     }
     let mut out = vec![Point::<D>::zeros(); n * D];
@@ -259,8 +271,8 @@ pub(crate) fn traction<const D: usize>(
     out
 }
 
-/// Polynomials on which the divergence is projected, at the quadrature points.
-pub(crate) fn pressures<const D: usize>(basis: &CellBasis, table: &Table) -> DMatrix<f64> {
+/// Polynomials on which the divergence is projected, at the points of a cell with a place in a block of cells.
+pub(crate) fn pressures<const D: usize>(basis: &CellBasis, table: &Table, place: &Window) -> DMatrix<f64> {
     let most = if basis.shape().is_tensor() { basis.degree() - 1 } else { 0 };
     let mut exponents = Vec::new();
     for i in 0..=most {
@@ -271,8 +283,9 @@ pub(crate) fn pressures<const D: usize>(basis: &CellBasis, table: &Table) -> DMa
         }
     }
     DMatrix::from_fn(exponents.len(), table.points.len(), |r, q| {
-        let x = table.points[q].0;
-        (0..D).map(|k| x[k].powi(exponents[r][k] as i32)).product()
+        let (x, _) = table.points[q];
+        let within = |k: usize| 0.5 * (place[k][0] * (1.0 - x[k]) + place[k][1] * (1.0 + x[k]));
+        (0..D).map(|k| within(k).powi(exponents[r][k] as i32)).product()
     })
 }
 

@@ -1,6 +1,7 @@
 //! The mesh of patches: spans as cells, control points and vertices that patches share counted once, and names of the sides.
 
 use super::join::{JoinedSides, PatchSide, joined_sides};
+use super::macro_cells::macro_cells;
 use super::patch::{NurbsError, NurbsPatch};
 use crate::block::side_names;
 use crate::mesh::{Mesh, Side};
@@ -81,10 +82,14 @@ pub fn mesh_of_patches<const D: usize>(patches: &[NurbsPatch<D>]) -> Result<Mesh
     }
     let mut mesh = Mesh::new(nodes);
     let shape = if D == 2 { CellShape::Quadrilateral } else { CellShape::Hexahedron };
+    let mut first = 0;
     for (number, patch) in patches.iter().enumerate() {
         let lines: [Vec<(usize, Arc<SpanFunctions>)>; D] = (patch.lines.each_ref())
             .map(|line| line.spans().into_iter().map(|(first, functions)| (first, Arc::new(functions))).collect());
         let degree = patch.degree();
+        for cells in macro_cells(&patch.lines) {
+            mesh.add_macro_cell(cells.into_iter().map(|(cell, place)| ((first + cell) as u32, place)));
+        }
         for cell in 0..spans[number].iter().product() {
             let span: [usize; D] = index_in(cell, &spans[number]);
             let own = (0..(degree + 1).pow(D as u32)).map(|f| {
@@ -107,6 +112,7 @@ pub fn mesh_of_patches<const D: usize>(patches: &[NurbsPatch<D>]) -> Result<Mesh
                 mesh.group_mut(&patch.name).cells.push(cell);
             }
         }
+        first += spans[number].iter().product::<usize>();
     }
     let mut first = 0;
     for (number, n) in spans.iter().enumerate() {
@@ -136,7 +142,7 @@ fn side_of(shape: CellShape, side: &PatchSide) -> u8 {
     shape.sides().iter().position(on).unwrap_or(0) as u8
 }
 
-fn index_in<const D: usize>(mut number: usize, grid: &[usize; D]) -> [usize; D] {
+pub(super) fn index_in<const D: usize>(mut number: usize, grid: &[usize; D]) -> [usize; D] {
     std::array::from_fn(|k| {
         let at = number % grid[k];
         number /= grid[k];
@@ -144,6 +150,6 @@ fn index_in<const D: usize>(mut number: usize, grid: &[usize; D]) -> [usize; D] 
     })
 }
 
-fn number_in<const D: usize>(index: &[usize; D], grid: &[usize; D]) -> usize {
+pub(super) fn number_in<const D: usize>(index: &[usize; D], grid: &[usize; D]) -> usize {
     (0..D).rev().fold(0, |number, k| number * grid[k] + index[k])
 }

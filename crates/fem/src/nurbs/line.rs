@@ -37,7 +37,7 @@ impl KnotLine {
     }
 
     /// How often a value is a knot.
-    fn multiplicity(&self, t: f64) -> usize {
+    pub(super) fn multiplicity(&self, t: f64) -> usize {
         let [from, to] = self.range();
         self.knots.iter().filter(|k| (*k - t).abs() <= SAME * (to - from)).count()
     }

@@ -22,6 +22,7 @@ mod gallery;
 mod heat;
 mod imported;
 mod invariance;
+mod manuals;
 mod materials;
 mod meshes;
 mod plasticity;

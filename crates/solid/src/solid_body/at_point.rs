@@ -23,7 +23,8 @@ impl<const D: usize> SolidBody<D> {
             return None;
         }
         let (cell, xi) = (0..self.mesh().cell_count()).find_map(|cell| Some((cell, self.local(cell, &within)?)))?;
-        let at = |xi: &Local| self.points_of(cell, &self.table_at(cell, &[*xi]), state)[0];
+        let pressure = self.fitted_pressure(self.pieces.of(cell), state);
+        let at = |xi: &Local| self.points_of(cell, &self.table_at(cell, &[*xi]), state, pressure.as_ref())[0];
         let found = at(&xi);
         // Where the map of a cell has a pole its stress is that beside it.
         let inner = self.body().mesh.shown_at(cell, &xi);

@@ -6,10 +6,12 @@
 //! `Σ w U''(θ) (P φ' δF)²` to `V'' + p φ''`: symmetric, with an energy.
 
 use super::SolidBody;
+use super::pieces::Piece;
 use super::spatial::spatial;
-use crate::stiffness::{Table, pressures, projects};
+use crate::stiffness::Table;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rayon::prelude::*;
+use signorini_fem::mesh::Window;
 use signorini_fem::small::{determinant, inverse};
 use signorini_material::law::{Response, StrainError, StressLaw, Tensor};
 use signorini_material::{Elastic, Space};
@@ -18,11 +20,18 @@ use signorini_mechanics::{BodyError, BodyState, Contribution, Order};
 /// Radii below this share of the size of the body are on the axis.
 const ON_AXIS: f64 = 1e-12;
 
-/// What a cell adds.
-struct CellForces {
+/// What a piece of cells adds.
+struct PieceForces {
     energy: f64,
     forces: DVector<f64>,
     tangent: Option<DMatrix<f64>>,
+}
+
+/// What the law makes of the points of a cell: the part of the shape, and the dilatation, none in plane stress.
+struct CellPoints {
+    at: Gradients,
+    responses: Vec<Response>,
+    dilatations: Vec<Response>,
 }
 
 /// The gradient of the displacement at the points of a cell: the components that there are, point after point, for each
@@ -48,6 +57,17 @@ impl Gradients {
         f
     }
 
+    /// The change of the dilatation at each point by each unknown.
+    pub fn changes(&self, dilatations: &[Response]) -> DMatrix<f64> {
+        let count = self.components.len();
+        let mut out = DMatrix::<f64>::zeros(dilatations.len(), self.rows.ncols());
+        for (q, dilatation) in dilatations.iter().enumerate() {
+            let row = self.rows.rows(q * count, count).tr_mul(&self.reduced(&dilatation.stress));
+            out.row_mut(q).copy_from(&row.transpose());
+        }
+        out
+    }
+
     pub fn reduced(&self, tensor: &Tensor) -> DVector<f64> {
         DVector::from_iterator(self.components.len(), self.components.iter().map(|c| tensor[*c]))
     }
@@ -55,20 +75,21 @@ impl Gradients {
 
 impl<const D: usize> SolidBody<D> {
     pub(super) fn integrated(&self, state: &BodyState, order: Order, out: &mut Contribution) -> Result<f64, BodyError> {
-        let of = |cell: usize| self.cell(cell, state, order).map_err(|e| self.refused(cell, e));
-        let found: Vec<Result<CellForces, BodyError>> = self.kept.par_iter().map(|cell| of(*cell)).collect();
+        let of = |number: &usize| {
+            let piece = self.piece(*number);
+            let found = self.forces_of(&piece, state, order).map_err(|(cell, e)| self.refused(cell, e))?;
+            Ok((piece, found))
+        };
+        let found: Vec<Result<(Piece<'_>, PieceForces), BodyError>> = self.kept.par_iter().map(of).collect();
         let mut energy = 0.0;
-        for (cell, found) in self.kept.iter().zip(found) {
-            let found = found?;
-            let (unknowns, signs) = self.unknowns_of(*cell);
+        for found in found {
+            let (piece, found) = found?;
             energy += found.energy;
-            for (a, k) in unknowns.iter().enumerate() {
-                out.forces[*k as usize] += signs[a] * found.forces[a];
+            for (a, k) in piece.unknowns.iter().enumerate() {
+                out.forces[*k as usize] += piece.signs[a] * found.forces[a];
             }
             if let Some(tangent) = found.tangent {
-                let n = unknowns.len();
-                let values = (0..n * n).map(|k| tangent[(k / n, k % n)] * signs[k / n] * signs[k % n]).collect();
-                out.blocks.push((unknowns, values));
+                out.blocks.push(piece.block(&tangent));
             }
         }
         Ok(energy)
@@ -123,43 +144,19 @@ impl<const D: usize> SolidBody<D> {
         Gradients { components, rows, weights, laws, unstrained: Vec::new() }
     }
 
-    /// The projection of the dilatation at the points of a cell to those of a table, where there is one.
-    pub(super) fn projection(&self, cell: usize, weights: &[f64], to: &Table) -> Option<DMatrix<f64>> {
-        let body = self.body();
-        let basis = body.dofs.basis(cell);
-        if !projects(basis, &body.material, self.bodies.space) {
-            return None;
-        }
-        self.fit(cell, weights, to)
+    /// The tangent of a piece in a state, functions in the order and sign of the basis.
+    pub(super) fn tangent_of(&self, piece: &Piece<'_>, state: &BodyState) -> Result<DMatrix<f64>, StrainError> {
+        let found = self.forces_of(piece, state, Order::Second).map_err(|(_, e)| e)?;
+        Ok(found.tangent.unwrap_or_default())
     }
 
-    /// The best fit by polynomials of one degree less, discontinuous from cell to cell: from values at the points of a cell to
-    /// those at the points of a table.
-    pub(super) fn fit(&self, cell: usize, weights: &[f64], to: &Table) -> Option<DMatrix<f64>> {
-        let basis = self.body().dofs.basis(cell);
-        let psi = pressures::<D>(basis, self.table(cell));
-        let mut weighted = psi.clone();
-        weighted.column_iter_mut().zip(weights).for_each(|(mut c, w)| c *= *w);
-        let factor = (&weighted * psi.transpose()).cholesky()?;
-        Some(pressures::<D>(basis, to).transpose() * factor.solve(&weighted))
-    }
-
-    /// The tangent of a cell in a state, functions in the order and sign of the basis.
-    pub(super) fn tangent_of(&self, cell: usize, state: &BodyState) -> Result<DMatrix<f64>, StrainError> {
-        Ok(self.cell(cell, state, Order::Second)?.tangent.unwrap_or_default())
-    }
-
-    fn cell(&self, cell: usize, state: &BodyState, order: Order) -> Result<CellForces, StrainError> {
-        let unknowns = D * self.body().dofs.basis(cell).len();
+    fn points_in(&self, cell: usize, state: &BodyState) -> Result<CellPoints, StrainError> {
         let own = self.own(cell, &state.configuration);
         let at = self.gradients_in(cell, self.table(cell), state);
         let displacement = &at.rows * &own;
-        let points = at.weights.len();
-        let count = at.components.len();
-        let mut energy = 0.0;
-        let mut responses: Vec<Response> = Vec::with_capacity(points);
+        let mut responses: Vec<Response> = Vec::with_capacity(at.weights.len());
         let mut dilatations: Vec<Response> = Vec::new();
-        for q in 0..points {
+        for q in 0..at.weights.len() {
             let f = at.deformation(q, &displacement);
             let (elastic, law) = &at.laws[q];
             if self.bodies.space == Space::PlaneStress {
@@ -170,58 +167,98 @@ impl<const D: usize> SolidBody<D> {
             responses.push(law.deviatoric(elastic, &f, self.history.at(&state.internal, cell, q)));
             dilatations.push(law.dilatation(&f));
         }
-        // Volumetric part: pressure at each point, and how it changes with the dilatation.
-        let mut curvature = vec![0.0; points];
-        let mut projection = None;
-        if !dilatations.is_empty() {
-            projection = self.projection(cell, &at.weights, self.table(cell));
-            let phi = DVector::from_iterator(points, dilatations.iter().map(|d| d.energy));
-            let theta = projection.as_ref().map_or(phi.clone(), |p| p * &phi);
-            let mut pressure = DVector::<f64>::zeros(points);
-            for q in 0..points {
-                let (elastic, law) = &at.laws[q];
-                let [value, slope, second] = law.volumetric(elastic, theta[q])?;
-                energy += at.weights[q] * value;
-                (pressure[q], curvature[q]) = (slope, second);
+        Ok(CellPoints { at, responses, dilatations })
+    }
+
+    /// # Errors
+    /// A deformation that the law does not cover, with its cell.
+    fn forces_of(
+        &self,
+        piece: &Piece<'_>,
+        state: &BodyState,
+        order: Order,
+    ) -> Result<PieceForces, (usize, StrainError)> {
+        let points = |(cell, _): &(u32, Window)| self.points_in(*cell as usize, state).map_err(|e| (*cell as usize, e));
+        let mut cells = piece.cells.iter().map(points).collect::<Result<Vec<CellPoints>, _>>()?;
+        let unknowns = piece.unknowns.len();
+        let mut energy = 0.0;
+        let mut tangent = (order == Order::Second).then(|| DMatrix::<f64>::zeros(unknowns, unknowns));
+        if self.bodies.space != Space::PlaneStress {
+            energy += self.add_pressure(piece, &mut cells, tangent.as_mut())?;
+        }
+        let mut forces = DVector::<f64>::zeros(unknowns);
+        for (c, CellPoints { at, responses, .. }) in cells.iter().enumerate() {
+            let count = at.components.len();
+            let mut stress = DVector::<f64>::zeros(count * responses.len());
+            for (q, response) in responses.iter().enumerate() {
+                energy += at.weights[q] * response.energy;
+                stress.rows_mut(q * count, count).copy_from(&(at.reduced(&response.stress) * at.weights[q]));
             }
-            let pressure = projection.as_ref().map_or(pressure.clone(), |p| p * &pressure);
-            for (q, (response, dilatation)) in responses.iter_mut().zip(&dilatations).enumerate() {
-                response.stress += dilatation.stress * pressure[q];
-                if order == Order::Second {
-                    response.tangent += dilatation.tangent * pressure[q];
+            piece.add(c, &at.rows.tr_mul(&stress), &mut forces);
+            let Some(tangent) = &mut tangent else { continue };
+            let mut turned = DMatrix::<f64>::zeros(count * responses.len(), at.rows.ncols());
+            for (q, response) in responses.iter().enumerate() {
+                let own = DMatrix::from_fn(count, count, |r, c| {
+                    at.weights[q] * response.tangent[(at.components[r], at.components[c])]
+                });
+                turned.rows_mut(q * count, count).copy_from(&(own * at.rows.rows(q * count, count)));
+            }
+            piece.add_square(c, &at.rows.tr_mul(&turned), tangent);
+        }
+        Ok(PieceForces { energy, forces, tangent })
+    }
+
+    /// The volumetric part: adds the pressure at each point to the stress and its derivative there, and what it changes with the
+    /// dilatation to the tangent. Its energy.
+    fn add_pressure(
+        &self,
+        piece: &Piece<'_>,
+        cells: &mut [CellPoints],
+        tangent: Option<&mut DMatrix<f64>>,
+    ) -> Result<f64, (usize, StrainError)> {
+        let weights: Vec<&[f64]> = cells.iter().map(|cell| cell.at.weights.as_slice()).collect();
+        let projection = self.projection(piece, &weights);
+        let fitted = |values: Vec<DVector<f64>>| match &projection {
+            Some(fit) => fit.fitted(&values),
+            None => values,
+        };
+        let of_points = |cell: &CellPoints| cell.dilatations.iter().map(|d| d.energy).collect::<Vec<f64>>().into();
+        let theta: Vec<DVector<f64>> = fitted(cells.iter().map(of_points).collect());
+        let mut energy = 0.0;
+        let (mut slopes, mut curvatures) = (Vec::new(), Vec::new());
+        for ((cell, theta), (number, _)) in cells.iter().zip(&theta).zip(piece.cells.iter()) {
+            let mut own = [Vec::new(), Vec::new()];
+            for (q, (elastic, law)) in cell.at.laws.iter().enumerate() {
+                let found = law.volumetric(elastic, theta[q]).map_err(|e| (*number as usize, e))?;
+                energy += cell.at.weights[q] * found[0];
+                own.iter_mut().zip(&found[1..]).for_each(|(list, v)| list.push(*v));
+            }
+            let [slope, curvature] = own;
+            slopes.push(DVector::from_vec(slope));
+            curvatures.push(curvature);
+        }
+        if let Some(tangent) = tangent {
+            let rows: Vec<DMatrix<f64>> = cells.iter().map(|cell| cell.at.changes(&cell.dilatations)).collect();
+            if let Some(fit) = &projection {
+                let change = fit.coefficients_by_unknown(piece, &rows);
+                *tangent += change.tr_mul(&(fit.products(&curvatures) * &change));
+            } else {
+                for (c, (change, curvature)) in rows.iter().zip(&curvatures).enumerate() {
+                    let mut weighted = change.clone();
+                    for (q, mut row) in weighted.row_iter_mut().enumerate() {
+                        row *= weights[c][q] * curvature[q];
+                    }
+                    piece.add_square(c, &change.tr_mul(&weighted), tangent);
                 }
             }
         }
-        let mut stress = DVector::<f64>::zeros(count * points);
-        for (q, response) in responses.iter().enumerate() {
-            energy += at.weights[q] * response.energy;
-            stress.rows_mut(q * count, count).copy_from(&(at.reduced(&response.stress) * at.weights[q]));
-        }
-        let forces = at.rows.tr_mul(&stress);
-        if order == Order::First {
-            return Ok(CellForces { energy, forces, tangent: None });
-        }
-        let mut turned = DMatrix::<f64>::zeros(count * points, unknowns);
-        for (q, response) in responses.iter().enumerate() {
-            let tangent = DMatrix::from_fn(count, count, |r, c| {
-                at.weights[q] * response.tangent[(at.components[r], at.components[c])]
-            });
-            turned.rows_mut(q * count, count).copy_from(&(tangent * at.rows.rows(q * count, count)));
-        }
-        let mut tangent = at.rows.tr_mul(&turned);
-        if !dilatations.is_empty() {
-            let mut change = DMatrix::<f64>::zeros(points, unknowns);
-            for (q, dilatation) in dilatations.iter().enumerate() {
-                let row = at.rows.rows(q * count, count).tr_mul(&at.reduced(&dilatation.stress));
-                change.row_mut(q).copy_from(&row.transpose());
+        let pressure = fitted(slopes);
+        for (CellPoints { responses, dilatations, .. }, pressure) in cells.iter_mut().zip(&pressure) {
+            for ((response, dilatation), p) in responses.iter_mut().zip(dilatations).zip(pressure.iter()) {
+                response.stress += dilatation.stress * *p;
+                response.tangent += dilatation.tangent * *p;
             }
-            let change = projection.as_ref().map_or(change.clone(), |p| p * &change);
-            let mut weighted = change.clone();
-            for (q, mut row) in weighted.row_iter_mut().enumerate() {
-                row *= at.weights[q] * curvature[q];
-            }
-            tangent += change.tr_mul(&weighted);
         }
-        Ok(CellForces { energy, forces, tangent: Some(tangent) })
+        Ok(energy)
     }
 }

@@ -1,11 +1,13 @@
 //! A solid as it is shown: cells divided into straight ones, with displacement and stress at their points.
 
 use super::SolidBody;
+use super::cells::Gradients;
 use super::spatial::spatial;
 use crate::stiffness::Table;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use signorini_fem::hierarchic::Values;
+use signorini_fem::mesh::Window;
 use signorini_fem::{CellShape, Local};
 use signorini_geometry::{Point, Vector};
 use signorini_material::StressLaw;
@@ -42,8 +44,11 @@ impl<const D: usize> SolidBody<D> {
         }
         let of = |cell: usize| &divisions[&(body.mesh.map_number(cell), body.dofs.basis_number(cell))];
         let cells: Vec<usize> = (0..body.mesh.cell_count()).collect();
+        let pieces: Vec<usize> = (0..self.pieces.count()).collect();
+        let pressures: Vec<Option<DVector<f64>>> = pieces.par_iter().map(|k| self.fitted_pressure(*k, state)).collect();
+        let pressure = |cell: usize| pressures[self.pieces.of(cell)].as_ref();
         let found: Vec<Vec<Shown>> =
-            cells.par_iter().map(|&cell| self.points_of(cell, &of(cell).table, state)).collect();
+            (cells.par_iter()).map(|&cell| self.points_of(cell, &of(cell).table, state, pressure(cell))).collect();
         let mut out = BodyFields::default();
         let mut stress = Vec::new();
         let mut equivalent = Vec::new();
@@ -59,7 +64,7 @@ impl<const D: usize> SolidBody<D> {
                 let xi = of(cell).table.points[q].0;
                 let inner = body.mesh.shown_at(cell, &xi);
                 if inner != xi {
-                    s = self.points_of(cell, &self.table_at(cell, &[inner]), state)[0].stress;
+                    s = self.points_of(cell, &self.table_at(cell, &[inner]), state, pressure(cell))[0].stress;
                 }
                 out.points.push(x);
                 out.displacement.push(displacement);
@@ -79,15 +84,22 @@ impl<const D: usize> SolidBody<D> {
         out
     }
 
-    /// Stress and plastic strain of laws with history are known at the quadrature points, and fitted from there to others.
-    pub(super) fn points_of(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
+    /// What is shown of the points of a table of a cell, with the pressure that is fitted on its piece. Stress and plastic strain of
+    /// laws with history are known at the quadrature points, and fitted from there to others.
+    pub(super) fn points_of(
+        &self,
+        cell: usize,
+        table: &Table,
+        state: &BodyState,
+        pressure: Option<&DVector<f64>>,
+    ) -> Vec<Shown> {
         if !self.law().has_history() {
-            return self.evaluated(cell, table, state);
+            return self.evaluated(cell, table, state, pressure);
         }
         let own = self.own(cell, &state.configuration);
-        let known = self.evaluated(cell, self.table(cell), state);
+        let known = self.evaluated(cell, self.table(cell), state, pressure);
         let weights = self.gradients(cell, self.table(cell)).weights;
-        let fit = self.fit(cell, &weights, table);
+        let fit = self.fit_to(cell, &weights, table);
         let shown = |q: usize| {
             let mut shown = Shown {
                 x: spatial(&self.body().mesh.position(cell, &table.map[q])),
@@ -108,12 +120,16 @@ impl<const D: usize> SolidBody<D> {
     }
 
     /// What the law gives at the points of a table: of laws with history those of quadrature.
-    fn evaluated(&self, cell: usize, table: &Table, state: &BodyState) -> Vec<Shown> {
+    fn evaluated(&self, cell: usize, table: &Table, state: &BodyState, pressure: Option<&DVector<f64>>) -> Vec<Shown> {
         let own = self.own(cell, &state.configuration);
         let at = self.gradients_in(cell, table, state);
         let gradients = &at.rows * &own;
         let plane_stress = self.bodies.space == Space::PlaneStress;
         // The pressure as it acts in the cell: projected where the dilatation is.
+        let projected = pressure.map(|coefficients| {
+            let piece = self.piece(self.pieces.of(cell));
+            self.polynomials(cell, &piece.cells[piece.number_of(cell)].1, table).tr_mul(coefficients)
+        });
         let pressure = |q: usize, f: &Matrix3<f64>, projected: &Option<DVector<f64>>| match projected {
             Some(p) => p[q],
             None => {
@@ -121,7 +137,6 @@ impl<const D: usize> SolidBody<D> {
                 law.volumetric(elastic, law.dilatation(f).energy).map_or(f64::NAN, |u| u[1])
             }
         };
-        let projected = if plane_stress { None } else { self.projected_pressure(cell, table, &own, state) };
         (0..table.points.len())
             .map(|q| {
                 let f = at.deformation(q, &gradients);
@@ -146,23 +161,31 @@ impl<const D: usize> SolidBody<D> {
             .collect()
     }
 
-    fn projected_pressure(
-        &self,
-        cell: usize,
-        to: &Table,
-        own: &DVector<f64>,
-        state: &BodyState,
-    ) -> Option<DVector<f64>> {
-        let inner = self.gradients_in(cell, self.table(cell), state);
-        let project = self.projection(cell, &inner.weights, self.table(cell))?;
-        let gradients = &inner.rows * own;
-        let phi =
-            (0..inner.weights.len()).map(|q| inner.laws[q].1.dilatation(&inner.deformation(q, &gradients)).energy);
-        let theta = project * DVector::from_iterator(inner.weights.len(), phi);
+    /// Coefficients of the pressure on a piece, where it is projected.
+    pub(super) fn fitted_pressure(&self, number: usize, state: &BodyState) -> Option<DVector<f64>> {
+        if self.bodies.space == Space::PlaneStress {
+            return None;
+        }
+        let piece = self.piece(number);
+        let gradients =
+            |(cell, _): &(u32, Window)| self.gradients_in(*cell as usize, self.table(*cell as usize), state);
+        let inner: Vec<Gradients> = piece.cells.iter().map(gradients).collect();
+        let weights: Vec<&[f64]> = inner.iter().map(|at| at.weights.as_slice()).collect();
+        let fit = self.projection(&piece, &weights)?;
+        let dilatations = |(at, (cell, _)): (&Gradients, &(u32, Window))| {
+            let displacement = &at.rows * self.own(*cell as usize, &state.configuration);
+            let of = |(q, (_, law)): (usize, &(Elastic, StressLaw))| {
+                law.dilatation(&at.deformation(q, &displacement)).energy
+            };
+            at.laws.iter().enumerate().map(of).collect::<Vec<f64>>().into()
+        };
+        let theta = fit.fitted(&inner.iter().zip(piece.cells.iter()).map(dilatations).collect::<Vec<_>>());
         let slope =
             |(t, (elastic, law)): (&f64, &(Elastic, StressLaw))| law.volumetric(elastic, *t).map_or(f64::NAN, |u| u[1]);
-        let slopes = DVector::from_iterator(inner.weights.len(), theta.iter().zip(&inner.laws).map(slope));
-        self.projection(cell, &inner.weights, to).map(|p| p * slopes)
+        let slopes = |(theta, at): (&DVector<f64>, &Gradients)| {
+            theta.iter().zip(&at.laws).map(slope).collect::<Vec<f64>>().into()
+        };
+        Some(fit.coefficients(&theta.iter().zip(&inner).map(slopes).collect::<Vec<_>>()))
     }
 
     fn division(&self, cell: usize) -> Division {

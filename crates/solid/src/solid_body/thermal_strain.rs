@@ -97,7 +97,7 @@ impl<const D: usize> SolidBody<D> {
         };
         let own = self.table(cell);
         let weights = self.gradients(cell, own).weights;
-        Some(match self.fit(cell, &weights, table) {
+        Some(match self.fit_to(cell, &weights, table) {
             Some(fit) => fit * strains(own),
             None => strains(table),
         })

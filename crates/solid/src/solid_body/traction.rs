@@ -3,6 +3,7 @@
 use super::SolidBody;
 use super::cells::Gradients;
 use super::faces::Faces;
+use super::pieces::Piece;
 use super::spatial::spatial;
 use crate::stiffness::{Table, traction};
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -30,7 +31,7 @@ impl<const D: usize> SolidBody<D> {
         Some(out)
     }
 
-    /// The traction on the first face of a tested point by each unknown of its cell.
+    /// The traction on the first face of a tested point by each unknown of its piece.
     fn traction_rows(&self, faces: &Faces<D>, site: &Site) -> Vec<(u32, Point<D>)> {
         let body = self.body();
         let Some(face) = faces.faces_of(site).next() else { return Vec::new() };
@@ -41,20 +42,18 @@ impl<const D: usize> SolidBody<D> {
         let normal = faces.reference(face, &s).area_normal().normalize();
         let table = Table::new(&body.mesh, &body.dofs, cell);
         let law = (&body.material, self.bodies.space);
-        let values = match self.material.is_uniform_hooke() {
+        let piece = self.piece(self.pieces.of(cell));
+        let values = match self.material.is_uniform_hooke() && piece.cells.len() == 1 {
             true => traction(&body.mesh, cell, &table, basis, law, (&xi, &normal)),
-            false => self.traction_by_law(cell, &xi, &normal),
+            false => self.traction_by_law(&piece, cell, &xi, &normal),
         };
-        let functions = body.dofs.cell(cell).enumerate();
-        let of = |(a, (f, sign)): (usize, (u32, f64))| {
-            (0..D).map(|i| (D as u32 * f + i as u32, values[a * D + i] * sign)).collect::<Vec<_>>()
-        };
-        functions.flat_map(of).collect()
+        let signed = piece.signs.iter().zip(values).map(|(sign, value)| value * *sign);
+        piece.unknowns.iter().copied().zip(signed).collect()
     }
 
-    /// The traction at a point of a cell by each of its unknowns, from the linear law there: that of `V`, and the pressure as it
-    /// acts in the cell.
-    fn traction_by_law(&self, cell: usize, xi: &Local, normal: &Point<D>) -> Vec<Point<D>> {
+    /// The traction at a point of a cell by each unknown of its piece, from the linear law there: that of `V`, and the pressure as
+    /// it acts in the piece.
+    fn traction_by_law(&self, piece: &Piece<'_>, cell: usize, xi: &Local, normal: &Point<D>) -> Vec<Point<D>> {
         let here = self.table_at(cell, &[*xi]);
         let at = self.gradients(cell, &here);
         let (elastic, law) = &at.laws[0];
@@ -64,14 +63,16 @@ impl<const D: usize> SolidBody<D> {
             Ok(plane) if in_plane_stress => plane.tangent,
             _ => law.deviatoric(elastic, &rest, &[]).tangent,
         };
-        let pressure = if in_plane_stress { None } else { self.pressure_by_unknown(cell, &here) };
+        let pressure = if in_plane_stress { None } else { Some(self.pressure_by_unknown(piece, cell, &here)) };
+        let mut rows = DMatrix::<f64>::zeros(at.rows.nrows(), piece.unknowns.len());
+        piece.add_columns(piece.number_of(cell), &at.rows, &mut rows);
         let volumetric = law.dilatation(&rest).stress;
         let force = |column: usize| {
             Point::<D>::from_fn(|i, _| {
                 (0..D)
                     .map(|j| {
                         let by_shape: f64 = (at.components.iter().enumerate())
-                            .map(|(r, c)| tangent[(3 * i + j, *c)] * at.rows[(r, column)])
+                            .map(|(r, c)| tangent[(3 * i + j, *c)] * rows[(r, column)])
                             .sum();
                         let by_volume = pressure.as_ref().map_or(0.0, |p| p[column] * volumetric[3 * i + j]);
                         (by_shape + by_volume) * normal[j]
@@ -79,29 +80,27 @@ impl<const D: usize> SolidBody<D> {
                     .sum()
             })
         };
-        (0..at.rows.ncols()).map(force).collect()
+        (0..rows.ncols()).map(force).collect()
     }
 
-    /// The pressure at the point of a table by each unknown of a cell of a linear law.
-    fn pressure_by_unknown(&self, cell: usize, here: &Table) -> Option<DVector<f64>> {
+    /// The pressure at the point of a table of a cell by each unknown of its piece, of a linear law.
+    fn pressure_by_unknown(&self, piece: &Piece<'_>, cell: usize, here: &Table) -> DVector<f64> {
         let rest = Matrix3::identity();
-        let of_points = |at: &Gradients| {
-            let count = at.components.len();
-            let row = |q: usize| {
-                let slope = at.reduced(&at.laws[q].1.dilatation(&rest).stress);
-                at.rows.rows(q * count, count).tr_mul(&slope).transpose()
-            };
-            DMatrix::from_rows(&(0..at.laws.len()).map(row).collect::<Vec<_>>())
-        };
+        let of_points =
+            |at: &Gradients| at.changes(&at.laws.iter().map(|(_, law)| law.dilatation(&rest)).collect::<Vec<_>>());
         let modulus = |(elastic, law): &(Elastic, StressLaw)| law.volumetric(elastic, 0.0).map_or(0.0, |u| u[2]);
-        let inner = self.gradients(cell, self.table(cell));
-        let Some(within) = self.projection(cell, &inner.weights, self.table(cell)) else {
+        let inner: Vec<Gradients> =
+            piece.cells.iter().map(|(cell, _)| self.gradients(*cell as usize, self.table(*cell as usize))).collect();
+        let weights: Vec<&[f64]> = inner.iter().map(|at| at.weights.as_slice()).collect();
+        let Some(fit) = self.projection(piece, &weights) else {
+            // Then the cell is alone.
             let at = self.gradients(cell, here);
-            return Some((of_points(&at) * modulus(&at.laws[0])).row(0).transpose());
+            return (of_points(&at) * modulus(&at.laws[0])).row(0).transpose();
         };
-        let mut pressure = within * of_points(&inner);
-        pressure.row_iter_mut().zip(&inner.laws).for_each(|(mut row, law)| row *= modulus(law));
-        let to = self.projection(cell, &inner.weights, here)?;
-        Some((to * pressure).row(0).transpose())
+        let rows: Vec<DMatrix<f64>> = inner.iter().map(of_points).collect();
+        let moduli: Vec<Vec<f64>> = inner.iter().map(|at| at.laws.iter().map(modulus).collect()).collect();
+        let pressure = fit.solve(&(fit.products(&moduli) * fit.coefficients_by_unknown(piece, &rows)));
+        let psi = self.polynomials(cell, &piece.cells[piece.number_of(cell)].1, here);
+        pressure.tr_mul(&psi.column(0))
     }
 }

@@ -4,6 +4,7 @@ mod elasticity;
 mod mass;
 mod nodes;
 mod nurbs;
+mod nurbs_incompressible;
 mod pressed;
 mod pressure;
 mod punch;

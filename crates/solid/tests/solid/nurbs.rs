@@ -10,10 +10,10 @@ use signorini_solid::{Elastic, StressLaw, Volumetric};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
-const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
+pub const NEO_HOOKE: StressLaw = StressLaw::NeoHooke(Volumetric::Quadratic);
 
 /// A quarter of a ring between two radii; its sides are `left` at x = 0, `right` at y = 0, `bottom` within, `top` without.
-fn quarter([a, b]: [f64; 2], turns: usize) -> NurbsPatch<2> {
+pub fn quarter([a, b]: [f64; 2], turns: usize) -> NurbsPatch<2> {
     let turn = |[x, y]: [f64; 2]| (0..turns).fold([x, y], |[x, y], _| [-y, x]);
     let arc = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]].map(turn);
     let points = [a, b].iter().flat_map(|r| arc.map(|x| Point::<2>::from(x) * *r)).collect();
@@ -22,7 +22,7 @@ fn quarter([a, b]: [f64; 2], turns: usize) -> NurbsPatch<2> {
 }
 
 /// A box of so many spans, smooth, with the control points inside moved and weights that vary by an amount.
-fn brick<const D: usize>(
+pub fn brick<const D: usize>(
     (low, high): ([f64; D], [f64; D]),
     degree: usize,
     cells: [usize; D],
@@ -49,9 +49,14 @@ fn brick<const D: usize>(
 }
 
 /// Two blocks pressed together: the largest deviation from one homogeneous state, relative to the displacement.
-fn patch<const D: usize>([lower, upper]: [Mesh<D>; 2], degree: usize, law: &StressLaw, extra: usize) -> f64 {
+pub fn patch<const D: usize>(
+    [lower, upper]: [Mesh<D>; 2],
+    degree: usize,
+    (law, poissons_ratio): (&StressLaw, f64),
+    extra: usize,
+) -> f64 {
     let mut system = System::default();
-    let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+    let elastic = Elastic { youngs_modulus: 1.0, poissons_ratio };
     for (name, mesh) in [("lower", lower), ("upper", upper)] {
         system.bodies.push(Box::new(solid(name, mesh, degree, elastic, law.clone())));
     }
@@ -88,19 +93,19 @@ fn unlike_splines_pass_the_patch_test() {
         let lower = brick::<2>(([0.0, 0.0], [1.0, 0.5]), degree, [3, 2], (0.2, 0.0));
         let upper = brick::<2>(([0.0, 0.5], [1.0, 1.0]), degree, [5, 1], (0.2, 0.0));
         // The functions of one side are no polynomials in the coordinates of the other.
-        let error = patch([lower, upper], degree, &law, 6);
+        let error = patch([lower, upper], degree, (&law, 0.3), 6);
         println!("degree {degree} {}: {error:.1e}", law.name());
         assert!(error < 1e-10, "degree {degree} {}: {error:e}", law.name());
     }
     // Rational functions are integrated as well as is asked for.
     let lower = brick::<2>(([0.0, 0.0], [1.0, 0.5]), 2, [3, 2], (0.2, 0.1));
     let upper = brick::<2>(([0.0, 0.5], [1.0, 1.0]), 2, [4, 1], (0.2, 0.1));
-    let error = patch([lower, upper], 2, &NEO_HOOKE, 6);
+    let error = patch([lower, upper], 2, (&NEO_HOOKE, 0.3), 6);
     println!("rational: {error:.1e}");
     assert!(error < 1e-8, "rational: {error:e}");
     let lower = brick::<3>(([0.0; 3], [1.0, 1.0, 0.5]), 2, [2, 1, 1], (0.0, 0.0));
     let upper = brick::<3>(([0.0, 0.0, 0.5], [1.0; 3]), 2, [1, 3, 1], (0.0, 0.0));
-    let error = patch([lower, upper], 2, &NEO_HOOKE, 0);
+    let error = patch([lower, upper], 2, (&NEO_HOOKE, 0.3), 0);
     println!("in space: {error:.1e}");
     assert!(error < 1e-10, "in space: {error:e}");
 }
@@ -145,9 +150,10 @@ const SHRUNK: [(f64, f64, f64); 2] = [(0.3, 0.2543533657929, 2.165640156287), (0
 
 #[test]
 fn a_tube_shrinks_on_a_shaft() {
-    for (nu, pressure, outer) in SHRUNK {
+    // Blocks of at least five cells have one dilatation: at a ratio of 0.49 it takes more of them.
+    for ((nu, pressure, outer), cells) in SHRUNK.into_iter().zip([[2, 4], [2, 15]]) {
         let elastic = Elastic { youngs_modulus: 2.0 * (1.0 + nu), poissons_ratio: nu };
-        let mesh = mesh_of_patches(&[quarter([1.0, 2.0], 0).raised(4, [2, 4]).unwrap()]).unwrap();
+        let mesh = mesh_of_patches(&[quarter([1.0, 2.0], 0).raised(4, cells).unwrap()]).unwrap();
         let mut system = System::default();
         system.bodies.push(Box::new(solid("tube", mesh, 4, elastic, NEO_HOOKE)));
         system.supports.push(hold(0, "left", [Some(0.0), None, None]));
@@ -165,7 +171,7 @@ fn a_tube_shrinks_on_a_shaft() {
         println!("nu {nu}: outer radius {low:.12} to {high:.12}");
         assert!((low - outer).abs() < 1e-6 && (high - outer).abs() < 1e-6, "{low} {high}");
         // Now by contact: the shaft is there from the start and the tube is drawn on it.
-        let mesh = mesh_of_patches(&[quarter([1.0, 2.0], 0).raised(4, [2, 4]).unwrap()]).unwrap();
+        let mesh = mesh_of_patches(&[quarter([1.0, 2.0], 0).raised(4, cells).unwrap()]).unwrap();
         let mut system = System::default();
         system.bodies.push(Box::new(solid("tube", mesh, 4, elastic, NEO_HOOKE)));
         let zero = Vector::<3>::zeros();

@@ -88,7 +88,12 @@ fn of_contact(setting: &Setting, state: &State, contact: &Contact, [before, now]
     } else {
         format!("{what}, and the error of its area and pressure is not known")
     };
-    let remedy = format!("use cells of {:.2e} or less there instead of {cell:.2e}", width.min(cell) / WANTED);
+    let fine = width.min(cell) / WANTED;
+    let remedy = if fine > 0.0 {
+        format!("use cells of {fine:.2e} or less there instead of {cell:.2e}")
+    } else {
+        format!("use cells much smaller than {cell:.2e} there")
+    };
     Some(finding(Outcome::Doubt, why).remedy(remedy))
 }
 

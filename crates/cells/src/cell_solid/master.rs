@@ -120,6 +120,16 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         search.beyond(&first, own.as_slice())
     }
 
+    /// The closest point on the sheet of a quadrature point, where that bounds the body: on its edges too.
+    fn on_sheet(&self, target: &Point<D>, number: usize) -> Option<OnSheets<D>> {
+        if self.solid.sheets.number(number).is_none() {
+            return self.closest(target, number);
+        }
+        let search = Search { master: self, target, number, size: self.solid.cell_size(&self.solid.points[number]) };
+        let alone = vec![self.solid.sheets.at(number, &self.solid.points[number])];
+        search.on(&alone).filter(|found| search.is_limit(found)).map(|found| OnSheets::new(found, alone))
+    }
+
     /// The closest point; of the boundary itself one that faces a site across a gap, as the quadrature point did from which
     /// it was looked for: a search along the boundary may end behind the material beside the gap.
     fn met(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<(usize, OnSheets<D>)> {
@@ -239,7 +249,7 @@ impl<const D: usize> Master for BoundaryMaster<'_, D> {
     fn facing(&self, x: &Point<3>, looking: &Looking) -> Option<MasterProjection> {
         let looks = |other: &crate::cell::Site<D>| looking.sees(&spatial(&other.normal));
         let number = self.nearest_point(x, f64::INFINITY, looks)?;
-        let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
+        let found = self.on_sheet(&Point::<D>::from_fn(|k, _| x[k]), number)?;
         let outward = self.outward(&found)?;
         let is_under = looking.is_under(&(x - spatial(&found.at.now())), &outward);
         (is_under && looking.sees(&outward)).then(|| MasterProjection::Foot(Box::new(self.foot(x, number, &found))))

@@ -36,6 +36,7 @@ mod rigid_dynamics;
 mod ropes_at_rest;
 mod scenes;
 mod schema;
+mod sharp_edges;
 mod solid_theory;
 mod solids;
 mod stability;

@@ -81,12 +81,21 @@ fn warn_of_oscillation(plan: &MechanicsPlan, result: &IncrementResult, shown: &S
         if slave.is_rigid() || master.is_rigid() || !oscillates(surface, sites) {
             continue;
         }
+        let of_case = plan.head.problem.contacts.get(contact.name());
+        let (why, remedy) = match of_case.is_some_and(|c| c.slave.is_some()) {
+            true => (
+                format!(", which is stiffer than the master `{}` or has smaller cells", master.name()),
+                "leave `slave` out, or use smaller cells in the master",
+            ),
+            false => (
+                String::new(),
+                "use smaller cells in the master; cells on curved sides that touch should match, or be splines (`mesh.nurbs`)",
+            ),
+        };
         let message = format!(
-            "contact `{}`: the pressure oscillates from node to node of the slave `{}`, which is stiffer than the master `{}` or \
-             has smaller cells; leave `slave` out, or use smaller cells in the master",
+            "contact `{}`: the pressure oscillates from node to node of the slave `{}`{why}; {remedy}",
             contact.name(),
-            slave.name(),
-            master.name()
+            slave.name()
         );
         record.warn_once(Warning::new(WarningKind::PressureOscillates, message).at_time(shown.time));
     }
@@ -151,7 +160,8 @@ pub fn warn(plan: &MechanicsPlan, [before, result]: [&IncrementResult; 2], shown
     warn_of_inverted_cells(shown, record);
     for curve in &shown.curves {
         let slack = curve.slack_cells();
-        if slack > 0 {
+        // What moves is where its inertia takes it.
+        if slack > 0 && result.moved.is_none() {
             let message = format!(
                 "`{}` is slack at t = {time}: {slack} of {} cells have no tension, so their position is not \
                  determined",

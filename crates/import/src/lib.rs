@@ -17,6 +17,7 @@ mod inp;
 pub mod mesh;
 mod moordyn;
 mod paths;
+pub mod step;
 mod vtu;
 mod xml;
 

@@ -155,8 +155,7 @@ impl SystemShown {
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
-                    let mesh = shape.features().filter(|features| !features.is_flat()).map(|features| {
-                        let mesh = features.mesh();
+                    let mesh = shape.mesh().map(|mesh| {
                         let placed = mesh.vertices().iter().map(|x| now + rotation * (x - origin));
                         (placed.collect(), mesh.triangles().to_vec())
                     });

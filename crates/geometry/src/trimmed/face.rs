@@ -34,8 +34,35 @@ pub(super) struct Face {
 
 /// Distance of chords from edges, in sizes of the face: a hundred chords for the outline of a disc.
 const CHORDS: f64 = 1e-3;
+/// Sizes of a face, from an edge, beyond which nothing of it lies.
+const FAR: f64 = 10.0;
 /// Sizes of a face by which a point within it may be beyond its edges: what rounding leaves of a few operations.
 const ROUNDING: f64 = 1e-12;
+
+/// A value of a periodic parameter at which no loop runs, in the middle of the largest gap; none where loops go all around.
+fn free_of_edges(uses: &[FaceUse], k: usize, period: f64) -> Option<f64> {
+    let mut covered: Vec<[f64; 2]> = Vec::new();
+    for w in uses.iter().filter(|u| !u.is_seam).flat_map(|u| u.samples.windows(2)) {
+        let (low, high) = (w[0].1[k].min(w[1].1[k]), w[0].1[k].max(w[1].1[k]));
+        let from = low.rem_euclid(period);
+        covered.push([from, from + high - low]);
+    }
+    covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut end = covered.iter().map(|c| c[1] - period).fold(f64::NEG_INFINITY, f64::max);
+    // What reaches over the end of the period covers its beginning.
+    let mut best = (0.0, 0.0);
+    for [from, to] in covered.iter().copied() {
+        if from - end > best.0 {
+            best = (from - end, 0.5 * (from + end));
+        }
+        end = end.max(to);
+    }
+    if covered.is_empty() {
+        return None;
+    }
+    // A thousandth of a turn is no place between edges.
+    (best.0 > 1e-3 * period).then_some(best.1)
+}
 
 impl Face {
     pub fn new(number: usize, data: FaceData, edges: &[Edge], tolerance: f64) -> Result<Self, SolidError> {
@@ -69,15 +96,32 @@ impl Face {
             }
         }
         let periods = surface.periods();
-        // Periods begin where a loop does, which is where others are likely to meet them.
+        // Where a period begins there is no edge, or else there is where a loop begins, as other loops are likely to do.
         let begin = uses.first().map(|u| if u.forward { u.samples[0].1 } else { u.samples[u.samples.len() - 1].1 });
         let ends = match &surface {
             FaceSurface::Spline(s) => s.domain().map(|d| d[0]),
             _ => [0.0; 2],
         };
         let is_spline = matches!(surface, FaceSurface::Spline(_));
-        let start = if is_spline { ends } else { begin.unwrap_or(ends) };
+        let free = |k: usize| periods[k].and_then(|p| free_of_edges(&uses, k, p));
+        let begin = begin.unwrap_or(ends);
+        let start = if is_spline { ends } else { [0, 1].map(|k| free(k).unwrap_or(begin[k])) };
         let region = Region::new(&uses, [scale, start], periods, is_outward, deviation);
+        // No face goes on without end.
+        let beyond = |k: usize, v: f64| {
+            let mut far = begin;
+            far[k] += v * FAR * size;
+            region.signed(far).0 > 0.0
+        };
+        let is_endless = match &surface {
+            FaceSurface::Plane { .. } => beyond(0, 1.0) || beyond(0, -1.0) || beyond(1, 1.0) || beyond(1, -1.0),
+            FaceSurface::Cylinder { .. } => beyond(1, 1.0) || beyond(1, -1.0),
+            FaceSurface::Cone { .. } => beyond(1, 1.0),
+            _ => false,
+        };
+        if is_endless {
+            return Err(SolidError::face(number, Wrong::Empty { noun: surface.noun() }));
+        }
         let sign = if is_outward { 1.0 } else { -1.0 };
         let mut face = Face { surface, sign, uses, region, size, tree: None, gap: gap.0 };
         if let FaceSurface::Spline(s) = &face.surface {

@@ -50,28 +50,23 @@ impl FaceSurface {
         }
     }
 
-    /// The closed form of the body that the surface bounds; none of a spline.
-    fn body(&self) -> Option<Box<dyn RigidShape>> {
+    /// The gap to the whole surface, by the closed form of the body that it bounds; none of a spline. It has no other local
+    /// minimum of the distance than this closest point, or a circle or sphere of them.
+    pub(super) fn gap(&self, x: &Point<3>) -> Option<GapJet<3>> {
         Some(match *self {
-            FaceSurface::Plane { axes } => Box::new(rigid_shape::Plane { point: axes.origin, normal: axes.ez }),
+            FaceSurface::Plane { axes } => rigid_shape::Plane { point: axes.origin, normal: axes.ez }.gap(x),
             FaceSurface::Cylinder { axes, radius } => {
-                Box::new(rigid_shape::Cylinder { point: axes.origin, axis: axes.ez, radius })
+                rigid_shape::Cylinder { point: axes.origin, axis: axes.ez, radius }.gap(x)
             }
             FaceSurface::Cone { axes, half_angle } => {
-                Box::new(rigid_shape::Cone { apex: axes.origin, axis: axes.ez, half_angle })
+                rigid_shape::Cone { apex: axes.origin, axis: axes.ez, half_angle }.gap(x)
             }
-            FaceSurface::Sphere { axes, radius } => Box::new(rigid_shape::Sphere { center: axes.origin, radius }),
+            FaceSurface::Sphere { axes, radius } => rigid_shape::Sphere { center: axes.origin, radius }.gap(x),
             FaceSurface::Torus { axes, major, minor } => {
-                Box::new(rigid_shape::Torus { center: axes.origin, axis: axes.ez, major, minor })
+                rigid_shape::Torus { center: axes.origin, axis: axes.ez, major, minor }.gap(x)
             }
             FaceSurface::Spline(_) => return None,
         })
-    }
-
-    /// The gap to the whole surface; none of a spline. It has no other local minimum of the distance than this closest
-    /// point, or a circle of them.
-    pub(super) fn gap(&self, x: &Point<3>) -> Option<GapJet<3>> {
-        Some(self.body()?.gap(x))
     }
 
     /// The gap of a point whose closest point on the surface is given, with the normal of the surface.

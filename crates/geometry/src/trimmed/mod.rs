@@ -16,6 +16,7 @@ mod error;
 mod face;
 mod face_surface;
 mod mass;
+mod merge;
 mod region;
 mod solids;
 mod spline_tree;
@@ -94,14 +95,18 @@ impl TrimmedSolid {
     /// Edges beside their faces, faces that are not joined along all edges where they are said to be closed, faces with bounds the
     /// wrong way around.
     pub fn new(data: SolidData) -> Result<Self, SolidError> {
-        let SolidData { vertices, edges, faces, is_closed, uncertainty } = data;
-        if faces.is_empty() {
+        let mut data = data;
+        if data.faces.is_empty() {
             return Err(SolidError { face: None, edge: None, wrong: Wrong::NoFaces });
         }
-        let hulls = edges.iter().map(|e| e.curve.atlas.hull()).map(|h| Aabb::new(h[0], h[1]));
+        let hulls = data.edges.iter().map(|e| e.curve.atlas.hull()).map(|h| Aabb::new(h[0], h[1]));
         let extent = hulls.reduce(|a, b| a.joined(&b)).map_or(0.0, |b| b.size().norm());
         // Faces without edges have no gaps.
-        let tolerance = uncertainty.max(JOINED * extent).max(f64::MIN_POSITIVE);
+        let tolerance = data.uncertainty.max(JOINED * extent).max(f64::MIN_POSITIVE);
+        if !data.is_closed {
+            merge::merge(&mut data, tolerance);
+        }
+        let SolidData { vertices, edges, faces, is_closed, .. } = data;
         for (k, edge) in edges.iter().enumerate() {
             for (end, t) in edge.ends.iter().zip(edge.curve.domain()) {
                 let at = edge.curve.position(t);

@@ -102,19 +102,17 @@ impl Region {
 
     /// Scaled parameters where the periods begin, and their images a period to both sides.
     fn images(&self, z: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
-        let list = [0, 1].map(|k| {
+        let first = [0, 1].map(|k| {
             let x = z[k] * self.scale[k];
-            match self.periods[k] {
-                Some(p) => {
-                    let from = self.start[k] * self.scale[k];
-                    let x = from + (x - from).rem_euclid(p);
-                    vec![x, x - p, x + p]
-                }
-                None => vec![x],
-            }
+            let from = self.start[k] * self.scale[k];
+            self.periods[k].map_or(x, |p| from + (x - from).rem_euclid(p))
         });
-        let [a, b] = list;
-        a.into_iter().flat_map(move |x| b.clone().into_iter().map(move |y| [x, y]))
+        let steps = self.periods.map(|p| if p.is_some() { 3 } else { 1 });
+        let period = self.periods.map(Option::unwrap_or_default);
+        let shifts = [0.0, -1.0, 1.0];
+        (0..steps[0]).flat_map(move |i| {
+            (0..steps[1]).map(move |j| [first[0] + shifts[i] * period[0], first[1] + shifts[j] * period[1]])
+        })
     }
 
     /// Distance to the loops in scaled parameters, positive within the region, and the nearest segment; infinite without loops.

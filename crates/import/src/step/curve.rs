@@ -10,6 +10,9 @@ use signorini_geometry::{Point, Vector};
 use std::f64::consts::TAU;
 
 const DAMAGED: &str = "export the file again: it is damaged";
+/// Curves that are others with more said of them.
+pub(super) const WRAPPED: [(&str, usize); 4] =
+    [("SURFACE_CURVE", 1), ("SEAM_CURVE", 1), ("INTERSECTION_CURVE", 1), ("TRIMMED_CURVE", 1)];
 /// Parameters, in parts of a period or a domain, that are the same.
 const SAME: f64 = 1e-9;
 
@@ -115,7 +118,8 @@ impl StepFile {
         forward: bool,
         place: &Similarity,
     ) -> Result<(Curve, bool), StepError> {
-        let entity = self.entity(id)?;
+        let entity = self.behind(id, &WRAPPED)?;
+        let id = entity.id;
         let wrong = |e: signorini_geometry::shape::ShapeError| entity.error(e.to_string(), DAMAGED);
         let [first, last] = if forward { [from, to] } else { [to, from] };
         // Of a turn from one angle to the next.
@@ -127,9 +131,6 @@ impl StepFile {
             [a, a + d]
         };
         match entity.name() {
-            "SURFACE_CURVE" | "SEAM_CURVE" | "INTERSECTION_CURVE" | "TRIMMED_CURVE" => {
-                return self.edge_curve(entity.reference(1)?, [from, to], is_closed, forward, place);
-            }
             "LINE" => {
                 if is_closed {
                     return Err(entity.error("an edge on a line ends where it begins", DAMAGED));

@@ -26,6 +26,21 @@ impl StepFile {
         Some(Entity { file: self, id, record })
     }
 
+    /// What an instance stands for that only adds to another one, such as a curve on surfaces: `of` are the names of those, with
+    /// the number of the parameter that refers to the other.
+    pub(super) fn behind(&self, id: u64, of: &[(&str, usize)]) -> Result<Entity<'_>, StepError> {
+        // A curve of a curve of a curve and so on is a circle.
+        const DEEPEST: usize = 8;
+        let mut entity = self.entity(id)?;
+        for _ in 0..DEEPEST {
+            match of.iter().find(|(name, _)| *name == entity.name()) {
+                Some((_, k)) => entity = entity.entity(*k)?,
+                None => return Ok(entity),
+            }
+        }
+        Err(entity.error("it refers to itself", "export the file again: it is damaged"))
+    }
+
     /// All instances with a record of a name.
     pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = Entity<'a>> {
         self.instances.keys().filter_map(move |id| self.record(*id, name))

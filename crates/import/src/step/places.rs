@@ -167,6 +167,10 @@ impl Assembly {
         }
         let mut out = Vec::new();
         for (parent, inner) in above {
+            // More places than any machine has parts are a circle.
+            if out.len() > 100_000 {
+                break;
+            }
             for outer in self.places(*parent, depth + 1) {
                 out.push(Similarity {
                     factor: 1.0,

@@ -34,7 +34,7 @@ impl StepFile {
             file: self,
             place,
             radians: listed.units.radians,
-            data: SolidData { is_closed: entity.name() != "SHELL_BASED_SURFACE_MODEL", uncertainty, ..SolidData::default() },
+            data: SolidData { uncertainty, ..SolidData::default() },
             ids: Ids::default(),
             vertices: HashMap::new(),
             edges: HashMap::new(),
@@ -57,34 +57,26 @@ impl StepFile {
 
 impl Reader<'_> {
     fn shell(&mut self, id: u64, is_outward: bool) -> Result<(), StepError> {
-        let entity = self.file.entity(id)?;
-        match entity.name() {
-            "CLOSED_SHELL" | "OPEN_SHELL" => {
-                if entity.name() == "CLOSED_SHELL" && self.data.faces.is_empty() {
-                    self.data.is_closed = true;
-                }
-                for face in entity.references(1)? {
-                    self.face(face, is_outward)?;
-                }
-                Ok(())
-            }
-            "ORIENTED_CLOSED_SHELL" | "ORIENTED_OPEN_SHELL" => {
-                let same = entity.flag(3)?;
-                self.shell(entity.reference(2)?, is_outward == same)
-            }
-            _ => Err(self.file.unknown(id, "shell", "CLOSED_SHELL, OPEN_SHELL, ORIENTED_CLOSED_SHELL")),
+        let stated = self.file.entity(id)?;
+        let (entity, is_outward) = match stated.name() {
+            "ORIENTED_CLOSED_SHELL" | "ORIENTED_OPEN_SHELL" => (stated.entity(2)?, is_outward == stated.flag(3)?),
+            _ => (stated, is_outward),
+        };
+        if !matches!(entity.name(), "CLOSED_SHELL" | "OPEN_SHELL") {
+            return Err(self.file.unknown(entity.id, "shell", "CLOSED_SHELL, OPEN_SHELL, ORIENTED_CLOSED_SHELL"));
         }
+        self.data.is_closed |= entity.name() == "CLOSED_SHELL";
+        entity.references(1)?.into_iter().try_for_each(|face| self.face(face, is_outward))
     }
 
     fn face(&mut self, id: u64, is_outward: bool) -> Result<(), StepError> {
-        let entity = self.file.entity(id)?;
-        match entity.name() {
-            "ADVANCED_FACE" | "FACE_SURFACE" => {}
-            "ORIENTED_FACE" => {
-                let same = entity.flag(3)?;
-                return self.face(entity.reference(2)?, is_outward == same);
-            }
-            _ => return Err(self.file.unknown(id, "face", "ADVANCED_FACE, FACE_SURFACE, ORIENTED_FACE")),
+        let stated = self.file.entity(id)?;
+        let (entity, is_outward) = match stated.name() {
+            "ORIENTED_FACE" => (stated.entity(2)?, is_outward == stated.flag(3)?),
+            _ => (stated, is_outward),
+        };
+        if !matches!(entity.name(), "ADVANCED_FACE" | "FACE_SURFACE") {
+            return Err(self.file.unknown(entity.id, "face", "ADVANCED_FACE, FACE_SURFACE, ORIENTED_FACE"));
         }
         let mut loops = Vec::new();
         for bound in entity.references(1)? {

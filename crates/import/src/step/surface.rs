@@ -1,7 +1,7 @@
 //! Surfaces of faces.
 
 use super::bspline::{Bspline, Weighted};
-use super::curve::{net, repeated};
+use super::curve::{WRAPPED, net, repeated};
 use super::model::Entity;
 use super::{StepError, StepFile};
 use signorini_geometry::shape::{Axes, Surface};
@@ -20,7 +20,8 @@ const SAME: f64 = 1e-9;
 impl StepFile {
     /// The surface of a face within a box.
     pub(super) fn surface(&self, id: u64, around: Option<Aabb<3>>, radians: f64, place: &Similarity) -> Result<Oriented, StepError> {
-        let entity = self.entity(id)?;
+        let entity = self.behind(id, &[("RECTANGULAR_TRIMMED_SURFACE", 1)])?;
+        let id = entity.id;
         let axes = || self.axes(entity.reference(1)?, place);
         Ok(match entity.name() {
             "PLANE" => (FaceSurface::Plane { axes: axes()? }, true),
@@ -39,9 +40,6 @@ impl StepFile {
             "CONICAL_SURFACE" => (cone(&entity, axes()?, radians, around, place)?, true),
             "SURFACE_OF_LINEAR_EXTRUSION" => self.extruded(&entity, around, place)?,
             "SURFACE_OF_REVOLUTION" => self.revolved(&entity, around, place)?,
-            "RECTANGULAR_TRIMMED_SURFACE" => {
-                return self.surface(entity.reference(1)?, around, radians, place);
-            }
             _ => match self.bspline_surface(&entity, place)? {
                 Some(found) => found,
                 None => {
@@ -73,7 +71,7 @@ impl StepFile {
     fn extruded(&self, entity: &Entity<'_>, around: Option<Aabb<3>>, place: &Similarity) -> Result<Oriented, StepError> {
         let vector = entity.entity(2)?;
         let along = self.direction(vector.reference(1)?, place)?;
-        let curve = entity.entity(1)?;
+        let curve = self.behind(entity.reference(1)?, &WRAPPED)?;
         if curve.name() == "LINE" {
             let origin = self.point(curve.reference(1)?, place)?;
             let ex = self.direction(curve.entity(2)?.reference(1)?, place)?;
@@ -101,7 +99,7 @@ impl StepFile {
             Ok(id) => self.direction(id, place)?,
             Err(_) => place.direction(&Vector::<3>::z()),
         };
-        let curve = entity.entity(1)?;
+        let curve = self.behind(entity.reference(1)?, &WRAPPED)?;
         let profile = if curve.name() == "LINE" {
             // As much of the line as the face can need.
             let point = self.point(curve.reference(1)?, place)?;
@@ -173,14 +171,8 @@ impl StepFile {
 
     /// The profile of a swept surface as B-splines.
     fn profile(&self, curve: &Entity<'_>, place: &Similarity) -> Result<Bspline, StepError> {
-        match curve.name() {
-            "TRIMMED_CURVE" | "SURFACE_CURVE" | "SEAM_CURVE" | "INTERSECTION_CURVE" => {
-                self.profile(&curve.entity(1)?, place)
-            }
-            _ => self.bspline(curve.id, place)?.ok_or_else(|| {
-                self.unknown(curve.id, "profile", "LINE, CIRCLE, ELLIPSE, B_SPLINE_CURVE_WITH_KNOTS")
-            }),
-        }
+        let valid = "LINE, CIRCLE, ELLIPSE, B_SPLINE_CURVE_WITH_KNOTS";
+        self.bspline(curve.id, place)?.ok_or_else(|| self.unknown(curve.id, "profile", valid))
     }
 }
 

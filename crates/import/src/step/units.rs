@@ -43,6 +43,10 @@ impl StepFile {
 
     /// The size of a unit, in `base`.
     fn unit(&self, id: u64, base: &str) -> Result<f64, StepError> {
+        self.unit_within(id, base, 0)
+    }
+
+    fn unit_within(&self, id: u64, base: &str, depth: usize) -> Result<f64, StepError> {
         if let Some(si) = self.record(id, "SI_UNIT") {
             // Within a complex instance the prefix comes first.
             let words: Vec<&str> = (0..3)
@@ -76,10 +80,11 @@ impl StepFile {
             // One of the file's own records, or of a complex instance.
             let of = self.record(measure.id, "MEASURE_WITH_UNIT").unwrap_or(measure);
             let unit = of.reference(1)?;
-            if unit == id {
+            // A unit of a unit of a unit and so on is a circle.
+            if depth > 8 {
                 return Err(converted.error("a unit is stated by itself", KNOWN));
             }
-            return Ok(of.number(0)? * self.unit(unit, base)?);
+            return Ok(of.number(0)? * self.unit_within(unit, base, depth + 1)?);
         }
         Err(self.error(id, "the unit is not known", KNOWN))
     }

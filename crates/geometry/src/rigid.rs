@@ -1,6 +1,5 @@
 //! Rigid motion of shapes.
 
-
 use crate::shape::{Curve, Shape, Surface};
 use crate::similarity::Similarity;
 use crate::{Matrix, Point, Vector};

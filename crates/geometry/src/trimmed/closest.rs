@@ -52,7 +52,10 @@ impl SolidFoot {
     /// The number of its face, edge or vertex; of a pole that of its face.
     pub fn number(&self) -> usize {
         match self.feature {
-            SolidFeature::Face(k, _) | SolidFeature::Edge(k, _) | SolidFeature::Vertex(k) | SolidFeature::Pole(k, _) => k,
+            SolidFeature::Face(k, _)
+            | SolidFeature::Edge(k, _)
+            | SolidFeature::Vertex(k)
+            | SolidFeature::Pole(k, _) => k,
         }
     }
 }

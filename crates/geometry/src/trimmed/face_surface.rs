@@ -21,12 +21,27 @@ use std::f64::consts::TAU;
 /// The surface of a face.
 #[derive(Clone, Debug)]
 pub enum FaceSurface {
-    Plane { axes: Axes },
-    Cylinder { axes: Axes, radius: f64 },
+    Plane {
+        axes: Axes,
+    },
+    Cylinder {
+        axes: Axes,
+        radius: f64,
+    },
     /// The origin of the axes is the apex, `ez` points along the one nappe that there is.
-    Cone { axes: Axes, half_angle: f64 },
-    Sphere { axes: Axes, radius: f64 },
-    Torus { axes: Axes, major: f64, minor: f64 },
+    Cone {
+        axes: Axes,
+        half_angle: f64,
+    },
+    Sphere {
+        axes: Axes,
+        radius: f64,
+    },
+    Torus {
+        axes: Axes,
+        major: f64,
+        minor: f64,
+    },
     Spline(Box<Surface>),
 }
 
@@ -138,9 +153,7 @@ impl FaceSurface {
         match self {
             FaceSurface::Plane { .. } => [None; 2],
             FaceSurface::Torus { .. } => [Some(TAU); 2],
-            FaceSurface::Spline(s) => {
-                [0, 1].map(|k| s.closed()[k].then(|| s.domain()[k][1] - s.domain()[k][0]))
-            }
+            FaceSurface::Spline(s) => [0, 1].map(|k| s.closed()[k].then(|| s.domain()[k][1] - s.domain()[k][0])),
             _ => [Some(TAU), None],
         }
     }
@@ -264,9 +277,8 @@ fn polish(s: &Surface, x: &Point<3>, start: [f64; 2]) -> Option<[f64; 2]> {
             [jet.u.norm_squared() + jet.uu.dot(&d), jet.u.dot(&jet.v) + jet.uv.dot(&d)],
             [0.0, jet.v.norm_squared() + jet.vv.dot(&d)],
         ];
-        let held = [0, 1].map(|k| {
-            !closed[k] && (z[k] <= domain[k][0] && g[k] >= 0.0 || z[k] >= domain[k][1] && g[k] <= 0.0)
-        });
+        let held =
+            [0, 1].map(|k| !closed[k] && (z[k] <= domain[k][0] && g[k] >= 0.0 || z[k] >= domain[k][1] && g[k] <= 0.0));
         for k in 0..2 {
             if held[k] {
                 (h[k][k], h[0][1]) = (1.0, 0.0);

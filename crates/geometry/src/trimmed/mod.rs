@@ -94,8 +94,7 @@ impl TrimmedSolid {
     /// # Errors
     /// Edges beside their faces, faces that are not joined along all edges where they are said to be closed, faces with bounds the
     /// wrong way around.
-    pub fn new(data: SolidData) -> Result<Self, SolidError> {
-        let mut data = data;
+    pub fn new(mut data: SolidData) -> Result<Self, SolidError> {
         if data.faces.is_empty() {
             return Err(SolidError { face: None, edge: None, wrong: Wrong::NoFaces });
         }

@@ -45,7 +45,13 @@ impl Region {
     ) -> Self {
         let periods = [0, 1].map(|k| periods[k].map(|p| p * scale[k]));
         let mut segments: Vec<Segment> = Vec::new();
-        let near = 1e-6 * uses.iter().flat_map(|u| &u.samples).map(|s| (s.1[0] * scale[0]).abs().max((s.1[1] * scale[1]).abs())).fold(0.0, f64::max) + 2.0 * deviation;
+        let near = 1e-6
+            * uses
+                .iter()
+                .flat_map(|u| &u.samples)
+                .map(|s| (s.1[0] * scale[0]).abs().max((s.1[1] * scale[1]).abs()))
+                .fold(0.0, f64::max)
+            + 2.0 * deviation;
         let mut loops = 0..0;
         let mut place = usize::MAX;
         let close = |segments: &mut Vec<Segment>, range: std::ops::Range<usize>| {
@@ -131,7 +137,13 @@ impl Region {
         let (squared, k, share, p) = best.get();
         let own = &self.segments[k];
         let mut across = left_of(&own.ends);
-        let at_end = if share == 0.0 { Some(0) } else if share == 1.0 { Some(1) } else { None };
+        let at_end = if share == 0.0 {
+            Some(0)
+        } else if share == 1.0 {
+            Some(1)
+        } else {
+            None
+        };
         if let Some(other) = at_end.and_then(|side: usize| own.beside[side]) {
             let [x, y] = left_of(&self.segments[other].ends);
             across = [across[0] + x, across[1] + y];

@@ -86,7 +86,10 @@ impl SplineTree {
             let mut roots = vec![([0.0; 2], [1.0; 2])];
             // Creases are lines, and points where they cross.
             let creases = |k: usize| {
-                [0, 1].into_iter().filter(move |s| matches!(piece.sides[k][*s], Side::Crease(_))).map(|s| [-1.0, 1.0][s])
+                [0, 1]
+                    .into_iter()
+                    .filter(move |s| matches!(piece.sides[k][*s], Side::Crease(_)))
+                    .map(|s| [-1.0, 1.0][s])
             };
             roots.extend(creases(0).map(|s| ([s, 0.0], [0.0, 1.0])));
             roots.extend(creases(1).map(|s| ([0.0, s], [1.0, 0.0])));
@@ -192,9 +195,7 @@ impl<'a> Search<'a> {
         if settled && second.is_convex(&free) && self.solve(cell, free, contains) {
             return;
         }
-        if settled
-            && second.excludes_stationary(&expansion.gram, &expansion.g, &free, &[[false; 2]; 2], &[0.0; 2])
-        {
+        if settled && second.excludes_stationary(&expansion.gram, &expansion.g, &free, &[[false; 2]; 2], &[0.0; 2]) {
             return;
         }
         if cell.radius() <= self.rounding {

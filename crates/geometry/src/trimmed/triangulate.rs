@@ -16,8 +16,8 @@ type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 const TURN: f64 = PI / 36.0;
 /// Parts into which a smooth part of a spline is divided, each way.
 const PARTS: usize = 8;
-/// Sizes of a face within which parameters are on a side of the domain.
-const SNAP: f64 = 1e-9;
+/// Sizes of the domain within which parameters are on a side of it: files put edges that far off, and chords are longer by far.
+const SNAP: f64 = 1e-6;
 /// Sizes of the body within which corners are the same.
 const SAME: f64 = 1e-10;
 
@@ -74,20 +74,18 @@ impl TrimmedSolid {
         for face in &self.faces {
             let flat = face.triangles(self, &divided);
             let scale = face.region.scale;
-            let own: Vec<u32> = flat
-                .corners
-                .iter()
-                .map(|(z, on_edge)| {
-                    let x = on_edge.unwrap_or_else(|| face.surface.position([z[0] / scale[0], z[1] / scale[1]]));
-                    let key = [0, 1, 2].map(|k| (x[k] / unit).round() as i64);
-                    *numbers.entry(key).or_insert_with(|| {
-                        vertices.push(x);
-                        vertices.len() as u32 - 1
-                    })
+            // Corners of no triangle lie beyond the face.
+            let mut number = |k: usize| {
+                let (z, on_edge) = &flat.corners[k];
+                let x = on_edge.unwrap_or_else(|| face.surface.position([z[0] / scale[0], z[1] / scale[1]]));
+                let key = [0, 1, 2].map(|k| (x[k] / unit).round() as i64);
+                *numbers.entry(key).or_insert_with(|| {
+                    vertices.push(x);
+                    vertices.len() as u32 - 1
                 })
-                .collect();
+            };
             for t in &flat.triangles {
-                let [a, b, c] = t.map(|k| own[k]);
+                let [a, b, c] = t.map(&mut number);
                 if a != b && b != c && c != a {
                     triangles.push(if face.sign > 0.0 { [a, b, c] } else { [a, c, b] });
                 }

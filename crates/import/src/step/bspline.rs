@@ -28,7 +28,8 @@ impl Bspline {
 
     /// A whole circle or ellipse `o + cos t a + sin t b`, from `t = 0`.
     pub fn ellipse(origin: Point<3>, a: Point<3>, b: Point<3>) -> Self {
-        let corners = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0)];
+        let corners =
+            [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0)];
         let at = |k: usize| {
             let (p, q) = corners[k % 8];
             let weight = if k % 2 == 0 { 1.0 } else { std::f64::consts::FRAC_1_SQRT_2 };

@@ -213,7 +213,10 @@ pub(super) fn net(
         return Err(entity.error("points and weights do not fit", DAMAGED));
     }
     let row = |(row, weights): (&Vec<u64>, &Vec<f64>)| {
-        row.iter().zip(weights).map(|(p, w)| Ok((entity.file.point(*p, place)?, *w))).collect::<Result<Vec<_>, StepError>>()
+        row.iter()
+            .zip(weights)
+            .map(|(p, w)| Ok((entity.file.point(*p, place)?, *w)))
+            .collect::<Result<Vec<_>, StepError>>()
     };
     rows.iter().zip(&weights).map(row).collect()
 }

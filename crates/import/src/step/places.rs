@@ -82,7 +82,8 @@ impl StepFile {
     fn product_name(&self, representation: u64, graph: &Assembly) -> Option<String> {
         let same = graph.same(representation);
         let shown = self.all("SHAPE_DEFINITION_REPRESENTATION");
-        let definition = shown.filter(|e| e.reference(1).is_ok_and(|id| same.contains(&id))).map(|e| e.reference(0)).next()?.ok()?;
+        let definition =
+            shown.filter(|e| e.reference(1).is_ok_and(|id| same.contains(&id))).map(|e| e.reference(0)).next()?.ok()?;
         let product_definition = self.entity(definition).ok()?.entity(2).ok()?;
         let formation = product_definition.entity(2).ok()?;
         let product = formation.entity(2).ok()?;
@@ -110,10 +111,10 @@ impl StepFile {
                         let to = self.frame(moved.reference(3)?)?;
                         let rotation = to.rotation * from.rotation.transpose();
                         let translation = to.translation - rotation * from.translation;
-                        out.parents.entry(child).or_default().push((
-                            parent,
-                            Similarity { factor: 1.0, rotation, translation },
-                        ));
+                        out.parents
+                            .entry(child)
+                            .or_default()
+                            .push((parent, Similarity { factor: 1.0, rotation, translation }));
                     }
                 }
             }
@@ -163,7 +164,11 @@ impl Assembly {
         let above: Vec<&(u64, Similarity)> =
             same.iter().filter_map(|s| self.parents.get(s)).flatten().filter(|(p, _)| !same.contains(p)).collect();
         if above.is_empty() || depth > DEEPEST {
-            return vec![Similarity { factor: 1.0, rotation: Matrix::<3>::identity(), translation: Vector::<3>::zeros() }];
+            return vec![Similarity {
+                factor: 1.0,
+                rotation: Matrix::<3>::identity(),
+                translation: Vector::<3>::zeros(),
+            }];
         }
         let mut out = Vec::new();
         for (parent, inner) in above {

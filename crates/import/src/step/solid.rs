@@ -136,8 +136,7 @@ impl Reader<'_> {
         let [from, to] = [self.vertex(stated[0])?, self.vertex(stated[1])?];
         let ends = [from, to].map(|k| self.data.vertices[k]);
         let same_sense = entity.flag(4)?;
-        let (curve, runs) =
-            self.file.edge_curve(entity.reference(3)?, ends, from == to, same_sense, &self.place)?;
+        let (curve, runs) = self.file.edge_curve(entity.reference(3)?, ends, from == to, same_sense, &self.place)?;
         let ends = if runs { [from, to] } else { [to, from] };
         let number = self.data.edges.len();
         self.data.edges.push(Edge { curve, ends });

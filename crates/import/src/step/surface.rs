@@ -19,7 +19,13 @@ const SAME: f64 = 1e-9;
 
 impl StepFile {
     /// The surface of a face within a box.
-    pub(super) fn surface(&self, id: u64, around: Option<Aabb<3>>, radians: f64, place: &Similarity) -> Result<Oriented, StepError> {
+    pub(super) fn surface(
+        &self,
+        id: u64,
+        around: Option<Aabb<3>>,
+        radians: f64,
+        place: &Similarity,
+    ) -> Result<Oriented, StepError> {
         let entity = self.behind(id, &[("RECTANGULAR_TRIMMED_SURFACE", 1)])?;
         let id = entity.id;
         let axes = || self.axes(entity.reference(1)?, place);
@@ -28,7 +34,9 @@ impl StepFile {
             "CYLINDRICAL_SURFACE" => {
                 (FaceSurface::Cylinder { axes: axes()?, radius: self.length(&entity, 2, place)? }, true)
             }
-            "SPHERICAL_SURFACE" => (FaceSurface::Sphere { axes: axes()?, radius: self.length(&entity, 2, place)? }, true),
+            "SPHERICAL_SURFACE" => {
+                (FaceSurface::Sphere { axes: axes()?, radius: self.length(&entity, 2, place)? }, true)
+            }
             "TOROIDAL_SURFACE" => {
                 let (major, minor) = (self.length(&entity, 2, place)?, self.length(&entity, 3, place)?);
                 if minor >= major {
@@ -68,7 +76,12 @@ impl StepFile {
         spline(entity, degree, [u?, v?], net).map(Some)
     }
 
-    fn extruded(&self, entity: &Entity<'_>, around: Option<Aabb<3>>, place: &Similarity) -> Result<Oriented, StepError> {
+    fn extruded(
+        &self,
+        entity: &Entity<'_>,
+        around: Option<Aabb<3>>,
+        place: &Similarity,
+    ) -> Result<Oriented, StepError> {
         let vector = entity.entity(2)?;
         let along = self.direction(vector.reference(1)?, place)?;
         let curve = self.behind(entity.reference(1)?, &WRAPPED)?;
@@ -92,7 +105,12 @@ impl StepFile {
         spline(entity, [profile.degree, 1], [profile.knots, vec![from, from, to, to]], net)
     }
 
-    fn revolved(&self, entity: &Entity<'_>, around: Option<Aabb<3>>, place: &Similarity) -> Result<Oriented, StepError> {
+    fn revolved(
+        &self,
+        entity: &Entity<'_>,
+        around: Option<Aabb<3>>,
+        place: &Similarity,
+    ) -> Result<Oriented, StepError> {
         let axis = entity.entity(2)?;
         let origin = self.point(axis.reference(1)?, place)?;
         let ez = match axis.reference(2) {

@@ -1,8 +1,8 @@
 //! Solids of STEP files, as OpenCASCADE writes them (by gmsh): against closed forms, and against points all over their surface;
 //! with SIGNORINI_BRUTE_FORCE=N against N times as many.
 
-use signorini_geometry::rigid_shape::{self, GapJet, Polyhedron, RigidShape};
 use signorini_geometry::rigid::RigidMotion;
+use signorini_geometry::rigid_shape::{self, GapJet, Polyhedron, RigidShape};
 use signorini_geometry::similarity::Similarity;
 use signorini_geometry::trimmed::TrimmedSolid;
 use signorini_geometry::{Matrix, Point, Vector};
@@ -65,7 +65,11 @@ fn round(section: &[[f64; 2]], x: &Point<3>) -> f64 {
 
 #[test]
 fn closed_forms() {
-    let block = rigid_shape::Block::new(Point::<3>::new(0.5, 1.0, 1.5), Vector::<3>::new(1.0, 2.0, 3.0), Matrix::<3>::identity());
+    let block = rigid_shape::Block::new(
+        Point::<3>::new(0.5, 1.0, 1.5),
+        Vector::<3>::new(1.0, 2.0, 3.0),
+        Matrix::<3>::identity(),
+    );
     let block = block.unwrap();
     agrees("box", 2000, |x| block.gap(x).gap);
     agrees("sphere", 2000, |x| x.norm() - 1.0);
@@ -90,7 +94,8 @@ fn closed_forms() {
     });
     // A box of which all edges are rounded is a smaller one and all that is near it.
     agrees("rounded", 2000, |x| {
-        let d = (x - Point::<3>::new(1.0, 1.5, 0.5)).component_mul(&Vector::<3>::repeat(1.0)).map(f64::abs) - Vector::<3>::new(0.8, 1.3, 0.3);
+        let d = (x - Point::<3>::new(1.0, 1.5, 0.5)).component_mul(&Vector::<3>::repeat(1.0)).map(f64::abs)
+            - Vector::<3>::new(0.8, 1.3, 0.3);
         let outside = d.map(|v| v.max(0.0)).norm();
         (if outside > 0.0 { outside } else { d.max() }) - 0.2
     });
@@ -188,7 +193,8 @@ fn derivatives() {
 /// The gap does not depend on the place of the body, nor on the unit of length.
 #[test]
 fn moved_bodies() {
-    let motion = RigidMotion::new(Vector::<3>::new(0.3, -0.8, 0.5), Point::<3>::zeros(), Vector::<3>::new(1.0, 2.0, -0.5));
+    let motion =
+        RigidMotion::new(Vector::<3>::new(0.3, -0.8, 0.5), Point::<3>::zeros(), Vector::<3>::new(1.0, 2.0, -0.5));
     let place = Similarity { factor: 0.01, rotation: motion.rotation, translation: motion.translation };
     for name in ["plate", "revolved", "tee"] {
         let file = StepFile::new(&bytes(name)).unwrap();

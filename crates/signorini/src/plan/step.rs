@@ -63,8 +63,14 @@ impl Planner<'_> {
             return Ok(Arc::new(solids.remove(0)));
         }
         let solids = TrimmedSolids::new(solids).map_err(|[i, j]| {
-            let message =
-                format!("solids {} and {} of `{}` (`{}`, `{}`) touch or overlap", i + 1, j + 1, path.display(), names[i], names[j]);
+            let message = format!(
+                "solids {} and {} of `{}` (`{}`, `{}`) touch or overlap",
+                i + 1,
+                j + 1,
+                path.display(),
+                names[i],
+                names[j]
+            );
             problem
                 .error(&key.file, message)
                 .help("fuse them in the CAD program, or choose one by its name or number:  solid = 1")

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The types of shapes, in the order of the manual.
-pub const TYPES: [&str; 30] = [
+pub const TYPES: [&str; 31] = [
     "point",
     "segment",
     "polyline",

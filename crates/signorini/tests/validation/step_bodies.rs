@@ -34,10 +34,7 @@ to = 1
 fn a_solid_of_a_file_presses_as_the_shape_that_it_is() {
     let step = |name: &str, keys: &str| format!("step = {{ file = {:?}, {keys} }}", file(name).display().to_string());
     let pairs = [
-        (
-            step("hemisphere.step", "translate = [0.1, 0.05, 2]"),
-            "sphere = { center = [0.1, 0.05, 2], radius = 1 }",
-        ),
+        (step("hemisphere.step", "translate = [0.1, 0.05, 2]"), "sphere = { center = [0.1, 0.05, 2], radius = 1 }"),
         (
             step("box.step", "rotate = [0, 0.1, 0], translate = [-0.5, -0.5, 1]"),
             // The same corner, turned about the middle of the box.

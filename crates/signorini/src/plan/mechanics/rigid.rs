@@ -241,7 +241,13 @@ impl Planner<'_> {
 
     /// The points of a rigid body that are tested, and its size: a ball at its centre, a box at its corners, a triangle mesh
     /// at its vertices, a solid of a STEP file at the corners of its triangles, which lie on its faces.
-    fn points_of(&self, key: &Rigid, shape: &dyn RigidShape, low: Point<3>, high: Point<3>) -> Result<(Vec<RigidSite>, f64), CaseError> {
+    fn points_of(
+        &self,
+        key: &Rigid,
+        shape: &dyn RigidShape,
+        low: Point<3>,
+        high: Point<3>,
+    ) -> Result<(Vec<RigidSite>, f64), CaseError> {
         let outside = key.side != Some(Side::Inside);
         Ok(match &key.shape {
             Shape::Sphere(sphere) => {

@@ -32,7 +32,7 @@ impl Bspline {
             [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0)];
         let at = |k: usize| {
             let (p, q) = corners[k % 8];
-            let weight = if k % 2 == 0 { 1.0 } else { std::f64::consts::FRAC_1_SQRT_2 };
+            let weight = if k.is_multiple_of(2) { 1.0 } else { std::f64::consts::FRAC_1_SQRT_2 };
             (origin + a * p + b * q, weight)
         };
         let quarter = |k: i32| std::f64::consts::FRAC_PI_2 * f64::from(k);

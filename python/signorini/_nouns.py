@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 #: Hash of the schema, by which the tests in Rust know it.
-SCHEMA = '737d69e74979364f'
+SCHEMA = '48dfaefd877c8dda'
 
 #: Kinds of every choice, and the type of what each holds.
 CHOICES = {
@@ -33,7 +33,7 @@ CHOICES = {
     'Path': {'points': '[[Value]]', 'spline': 'SplinePath', 'file': 'PathFile', 'arc': 'ArcPath', 'helix': 'HelixPath', 'formula': 'FormulaPath'},
     'PathFriction': {'coulomb': 'PathCoulomb'},
     'Section': {'circle': 'CircleSection', 'rectangle': 'RectangleSection', 'stiffness': 'SectionStiffness'},
-    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'box': 'BoxShape', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
+    'Shape': {'height': 'Value', 'plane': 'Plane', 'sphere': 'Sphere', 'box': 'BoxShape', 'cylinder': 'Cylinder', 'cone': 'Cone', 'ellipsoid': 'Ellipsoid', 'torus': 'Torus', 'paraboloid': 'Paraboloid', 'revolution': 'Revolution', 'nurbs': 'Nurbs', 'stl': 'Stl', 'step': 'StepFile', 'file': 'MeshFile', 'triangles': 'TriangleArrays', 'height_map': 'HeightMap', 'level_set': 'LevelSetShape'},
     'SolidMesh': {'box': 'BoxMesh', 'gmsh': 'GmshMesh', 'file': 'MeshFile', 'arrays': 'MeshArrays', 'nurbs': 'NurbsMesh'},
     'SupportAxes': {'rectangular': '[[Value]]', 'cylindrical': 'CylindricalAxes'},
 }
@@ -384,7 +384,7 @@ class Cells(Noun):
     def __init__(
         self,
         *,
-        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        geometry: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         mesh: CellsMesh | Mapping[str, Any],
         material: LinearElastic | NeoHooke | SaintVenantKirchhoff | MooneyRivlin | Yeoh | Ogden | ArrudaBoyce | Orthotropic | ElasticPlastic | Mapping[str, Any] | str,
         alpha: Optional[Value] = None,
@@ -779,7 +779,7 @@ class Difference(Noun):
     _key = 'difference'
     _types = {'value': ('difference', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -1403,7 +1403,7 @@ class Intersection(Noun):
     _key = 'intersection'
     _types = {'value': ('intersection', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -2015,7 +2015,7 @@ class OffsetGeometry(Noun):
     def __init__(
         self,
         *,
-        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        of: ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         distance: Value,
     ) -> None:
         self.of = of
@@ -2521,7 +2521,7 @@ class Rigid(Noun):
     def __init__(
         self,
         *,
-        shape: Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
+        shape: Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str,
         motion: Optional[Fixed | Prescribed | FreeMotion | Mapping[str, Any] | str] = None,
         side: Optional[str] = None,
         smooth: Optional[bool] = None,
@@ -2852,6 +2852,36 @@ class Step(Noun):
         self.increments = increments
 
 
+class StepFile(Noun):
+    """Solids of a STEP file (ISO 10303: AP203, AP214, AP242).
+
+    file: The file. The path is relative to the folder of the case.
+    rotate: Rotation vector in radians about the origin of the file, applied after scaling.
+    scale: Length of one unit of the file in base units. If left out, the unit that the file states is converted
+        where the case has `units`, else its numbers stay as they are.
+    solid: The name of one solid of the file, or its number, counted from 1; all solids if left out.
+    translate: Translation, applied after scaling and rotation; lengths.
+    """
+
+    _key = 'step'
+    _types = {'file': ('file', 'str'), 'rotate': ('rotate', 'Value|[Value]'), 'scale': ('scale', 'Value'), 'solid': ('solid', 'int|str'), 'translate': ('translate', '[Value]')}
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        rotate: Optional[Value | Sequence[Value] | Array] = None,
+        scale: Optional[Value] = None,
+        solid: Optional[int | str] = None,
+        translate: Optional[Sequence[Value] | Array] = None,
+    ) -> None:
+        self.file = file
+        self.rotate = rotate
+        self.scale = scale
+        self.solid = solid
+        self.translate = translate
+
+
 class Stl(Noun):
     """A triangle mesh from an STL, OBJ or PLY file.
 
@@ -3099,7 +3129,7 @@ class Union(Noun):
     _key = 'union'
     _types = {'value': ('union', '[<Composed>|<Shape>]')}
 
-    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
+    def __init__(self, value: Sequence[ImplicitGeometry | BoxGeometry | ImageGeometry | Union | Intersection | Difference | OffsetGeometry | Mapping[str, Any] | str | Height | Plane | Sphere | BoxShape | Cylinder | Cone | Ellipsoid | Torus | Paraboloid | Revolution | Nurbs | Stl | StepFile | MeshFile | TriangleArrays | HeightMap | LevelSetShape | Value | Mapping[str, Any] | str] | Array) -> None:
         self.value = value
 
 
@@ -3363,4 +3393,4 @@ class ProblemKeys(Noun):
         self.winding = winding
 
 
-__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "BoxShape", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "ContactHeat", "Convection", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Heat", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Petsc", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Solution", "Sphere", "SplinePath", "Step", "Stl", "SubCellIntegration", "Support", "Table", "Thermal", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]
+__all__ = ["ActiveSetMethod", "Adhesion", "ArcLength", "ArcPath", "AreaControl", "ArrudaBoyce", "AugmentedLagrangian", "BaseUnits", "Beam", "BoxGeometry", "BoxMesh", "BoxShape", "CellArrays", "CellSurface", "Cells", "CellsGrid", "CellsMesh", "CellsRefine", "CircleSection", "Cohesion", "Cone", "ConstraintTerm", "Contact", "ContactHeat", "Convection", "CoulombFriction", "CurveMethod", "Cylinder", "CylindricalAxes", "Difference", "Disc", "DiscMethod", "DividedGmshMesh", "Dynamics", "ElasticPlastic", "Ellipse", "Ellipsoid", "ExactIntegration", "ExponentialCompliance", "Fibre", "Fit", "Fixed", "FormulaPath", "FreeMotion", "GaussPoint", "GmshMesh", "GridMesh", "Heat", "Height", "HeightMap", "HelixPath", "ImageGeometry", "Implicit", "ImplicitGeometry", "Intersection", "Interval", "LevelSetMethod", "LevelSetShape", "Limits", "LinearConstraint", "LinearElastic", "Load", "Membrane", "MeshAdjustment", "MeshArrays", "MeshAxis", "MeshFile", "MooneyRivlin", "Mortar", "Multiplier", "NearRefine", "NeoHooke", "Nitsche", "Node", "Nurbs", "NurbsMesh", "NurbsPatch", "OffsetGeometry", "Ogden", "OnBody", "Orthotropic", "Output", "Paraboloid", "PathCoulomb", "PathFile", "Penalty", "Petsc", "Plane", "Points", "PolarOpening", "Polygon", "PowerCompliance", "Prescribed", "RateAndStateFriction", "RayleighDamping", "Rectangle", "RectangleSection", "Rectangular", "Refine", "Revolution", "Rigid", "Rope", "RopeOnSurface", "SaintVenantKirchhoff", "SectionStiffness", "ShortestPath", "Solid", "SolidEdge", "Solution", "Sphere", "SplinePath", "Step", "StepFile", "Stl", "SubCellIntegration", "Support", "Table", "Thermal", "Time", "TimeFunction", "Torus", "TrescaFriction", "TriangleArrays", "Union", "View", "ViscousFriction", "Winch", "Winding", "WindingPattern", "WindingStart", "Yeoh"]

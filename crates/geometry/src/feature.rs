@@ -41,6 +41,8 @@ pub enum Entity {
     Collapsed(Border),
     /// A side that is a smooth interior point.
     Pole,
+    /// A face, edge or vertex of a solid, counted from zero among those of its kind.
+    Part(u32),
 }
 
 fn border_name(border: Border) -> &'static str {
@@ -65,6 +67,7 @@ impl fmt::Display for Entity {
             Entity::CreaseEnd(k) => write!(f, "crease-end:{k}"),
             Entity::Collapsed(b) => write!(f, "collapsed:{}", border_name(*b)),
             Entity::Pole => f.write_str("pole"),
+            Entity::Part(k) => write!(f, "{k}"),
         }
     }
 }

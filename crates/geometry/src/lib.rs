@@ -22,6 +22,7 @@
 //! - [`grid_spline`]: functions given by values on a grid.
 //! - [`outline`]: closed outlines of a function sampled on a grid.
 //! - [`polyhedra`]: facets, edges and corners of closed triangle meshes, and where two of them meet.
+//! - [`trimmed`]: solids of CAD programs, within faces that are parts of surfaces.
 //! - [`polygon`]: winding numbers, areas and crossings of polygons.
 
 pub mod aabb;
@@ -54,6 +55,7 @@ pub mod shape;
 pub mod similarity;
 pub mod spline;
 mod straight;
+pub mod trimmed;
 
 pub use aabb::Aabb;
 pub use closed_curve::{ClosedCurve, CurvePoint};

@@ -1,7 +1,5 @@
 //! Rigid motion of shapes.
 
-use std::sync::Arc;
-
 use crate::shape::{Curve, Shape, Surface};
 use crate::similarity::Similarity;
 use crate::{Matrix, Point, Vector};
@@ -47,7 +45,7 @@ impl RigidMotion {
         self.similarity().surface(s)
     }
 
-    /// A moved shape. An implicit surface keeps its functions and cannot be moved: `None`.
+    /// A moved shape. Implicit surfaces and solids keep their functions and faces and cannot be moved: `None`.
     pub fn shape(&self, shape: &Shape) -> Option<Shape> {
         Some(match shape {
             Shape::Mesh(m) => {
@@ -55,10 +53,10 @@ impl RigidMotion {
                 mesh.move_vertices(m.vertices().iter().map(|v| self.point(v)).collect()).ok()?;
                 mesh.into()
             }
-            Shape::Implicit(s)
+            Shape::Implicit(_) | Shape::Solid(_)
                 if *self == Self::new(Vector::<3>::zeros(), Point::<3>::zeros(), Vector::<3>::zeros()) =>
             {
-                Shape::Implicit(Arc::clone(s))
+                shape.clone()
             }
             _ => return self.similarity().shape(shape),
         })

@@ -2,7 +2,7 @@
 //!
 //! A deck is read into plain types ([`Deck`]): mesh, sets, materials, supports, loads, contacts and steps. From these the
 //! mesh of a body is built ([`mesh::build`]), and the text of a case ([`case::text`]). Paths of MuJoCo (`.xml`) and OpenSim (`.osim`)
-//! and lines of MoorDyn (`.txt`, `.dat`) become the text of a case at once ([`case_text`]). A keyword that is not known is an error
+//! and lines of MoorDyn (`.txt`, `.dat`) become the text of a case at once ([`case_text`]). Solids of STEP files are read into geometry ([`step`]). A keyword that is not known is an error
 //! with its line; what is left out or changed is a [`Remark`] of the deck.
 
 pub mod adjust;
@@ -17,6 +17,7 @@ mod inp;
 pub mod mesh;
 mod moordyn;
 mod paths;
+pub mod step;
 mod vtu;
 mod xml;
 

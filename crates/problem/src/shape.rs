@@ -36,6 +36,8 @@ pub enum Shape {
     Nurbs(SurfaceFile),
     /// A triangle mesh from an STL, OBJ or PLY file.
     Stl(SurfaceFile),
+    /// Solids of a CAD program from a STEP file, with their exact faces, edges and corners.
+    Step(StepFile),
     /// The boundary of a mesh of cells in space from a file, such as a rigid part of a deck. Curved faces become flat.
     File(MeshFile),
     /// A triangle mesh from arrays.
@@ -391,4 +393,29 @@ pub struct SurfaceFile {
     pub rotate: Option<Components>,
     /// Translation, applied after scaling and rotation; lengths.
     pub translate: Option<List<Value>>,
+}
+
+/// Solids of a STEP file (ISO 10303: AP203, AP214, AP242).
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepFile {
+    /// The file. The path is relative to the folder of the case.
+    pub file: String,
+    /// The name of one solid of the file, or its number, counted from 1; all solids if left out.
+    pub solid: Option<StepSolid>,
+    /// Length of one unit of the file in base units. If left out, the unit that the file states is converted where the case has
+    /// `units`, else its numbers stay as they are.
+    pub scale: Option<Value>,
+    /// Rotation vector in radians about the origin of the file, applied after scaling.
+    pub rotate: Option<Components>,
+    /// Translation, applied after scaling and rotation; lengths.
+    pub translate: Option<List<Value>>,
+}
+
+/// A solid of a file.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum StepSolid {
+    Number(i64),
+    Name(String),
 }

@@ -118,7 +118,7 @@ enum Command {
     Closest {
         /// The queries as JSON (see docs/closest-points.md); with --to, points as CSV or NPY; - for standard input
         queries: PathBuf,
-        /// The shape on which the points are projected: STL, OBJ, PLY, or JSON as in a query
+        /// The shape on which the points are projected: STL, OBJ, PLY, STEP, or JSON as in a query
         #[arg(long, value_name = "SHAPE")]
         to: Option<PathBuf>,
         /// File for the answers: .json, .csv or .npy

@@ -18,6 +18,7 @@ pub mod reader;
 pub(crate) mod rigid;
 mod rigid_shape;
 pub mod solid;
+mod step;
 mod surface;
 
 use crate::problem::{Analysis, Body, CaseError, Problem, Space};

@@ -6,13 +6,13 @@
 //! found first and named afterwards ([`FeatureKind`]): faces, edges and vertices cover space without gaps because a
 //! global minimiser always exists.
 
-mod bounds;
+pub(crate) mod bounds;
 mod classify;
 mod closed_form;
 mod ellipsoid;
 mod flat;
 mod hessian;
-mod newton;
+pub(crate) mod newton;
 mod partner;
 mod query;
 mod result;
@@ -33,7 +33,9 @@ use crate::implicit_surface::ImplicitSurface;
 use crate::mesh::TriangleMesh;
 use crate::patch::{Atlas, Chart, Piece, PointChart};
 use crate::scale::{direction, length};
+use crate::rigid_shape::RigidShape;
 use crate::shape::Shape;
+use crate::trimmed::TrimmedSolid;
 use classify::{Named, projection};
 use rayon::prelude::*;
 use search::{Effort, search};
@@ -96,6 +98,8 @@ fn closest_near_one(a: &Shape, b: &Shape, query: &Query) -> Projection {
         (Shape::Surface(s), Shape::Mesh(m)) => on_triangles(general::<2, 2, 4, _, _>(&s.atlas, m.atlas(), query)),
         (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, n),
         (Shape::Point(p), Shape::Implicit(s)) => point_implicit(p, s),
+        (Shape::Point(p), Shape::Solid(s)) => point_solid(p, s, query),
+        (_, Shape::Solid(s)) => beside_solid(a, s, query),
         (_, Shape::Implicit(s)) => {
             // The triangulation stands for the surface: a share of a cell is what it can be off.
             let mesh = Shape::Mesh(Box::new(s.mesh().clone()));
@@ -138,6 +142,33 @@ fn point_implicit(p: &Point<3>, surface: &ImplicitSurface) -> Projection {
     Projection { certified_to: surface.cell(), ..Projection::known(closest, uniqueness, Vec::new()) }
 }
 
+fn point_solid(p: &Point<3>, solid: &TrimmedSolid, query: &Query) -> Projection {
+    let found = solid.closest_all(p, query.tie * solid.size());
+    let pairs = found.iter().map(|foot| {
+        let feature = Feature { kind: foot.kind(), entity: Entity::Part(foot.number() as u32) };
+        let b = Foot::new(foot.point, feature, &[]);
+        ClosestPair { distance: foot.distance, a: Foot::of_point(*p), b, lambda_min: f64::NAN }
+    });
+    let mut pairs: Vec<ClosestPair> = pairs.collect();
+    let closest = pairs.remove(0);
+    let uniqueness = match solid.focal(p, &found[0]) {
+        0 if pairs.is_empty() => Uniqueness::Unique,
+        0 => Uniqueness::Multiple,
+        dimension => Uniqueness::Continuum { dimension },
+    };
+    Projection::known(closest, uniqueness, pairs)
+}
+
+/// The triangles of a solid stand for it: what they can be off is known.
+fn beside_solid(a: &Shape, solid: &TrimmedSolid, query: &Query) -> Projection {
+    let Some(mesh) = solid.mesh() else {
+        let corner = Shape::Point(solid.hull().center());
+        return Projection { certified_to: f64::INFINITY, ..closest(a, &corner, query) };
+    };
+    let found = closest(a, &Shape::Mesh(Box::new(mesh.clone())), query);
+    Projection { certified_to: solid.off_triangles(), ..found }
+}
+
 /// The distance with the sign of the side of `b` on which the closest point of `a` lies: negative inside a closed mesh
 /// or an implicit body, and below a surface, seen along `r_u × r_v`. `None` where there is no side.
 pub fn signed_gap(pair: &ClosestPair, b: &Shape) -> Option<f64> {
@@ -158,6 +189,7 @@ pub fn signed_gap(pair: &ClosestPair, b: &Shape) -> Option<f64> {
             return m.signed(&pair.a.point, &d, &normal, pair.distance);
         }
         Shape::Implicit(s) => s.body().value(&pair.a.point),
+        Shape::Solid(s) => s.gap(&pair.a.point).gap,
         _ => return None,
     };
     Some(if side < 0.0 { -pair.distance } else { pair.distance })

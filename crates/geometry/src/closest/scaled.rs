@@ -48,6 +48,7 @@ fn magnitude(shape: &Shape) -> f64 {
         Shape::Surface(s) => s.atlas.magnitude,
         Shape::Mesh(m) => m.magnitude(),
         Shape::Implicit(s) => s.mesh().magnitude(),
+        Shape::Solid(s) => s.hull().min.amax().max(s.hull().max.amax()),
     }
 }
 

@@ -12,6 +12,7 @@
 //! | [`Torus`] about `k` | `d - r`, `d = \|x - R e_ρ\|` | `mm / d + tt (n·e_ρ) / ρ`, `m = t × n` |
 //! | [`Revolution`] of a profile about `k` | closest point of the profile | `mm S/(1 + g S) + tt (n·e_ρ) / ρ` |
 //! | [`Ellipsoid`], [`Paraboloid`], [`Polyhedron`], [`ClosestPoints`] | certified closest point | of the surface at that point |
+//! | [`TrimmedSolid`](crate::trimmed::TrimmedSolid) | closest point of its faces, edges and vertices | of the surface, the edge or the vertex |
 //! | [`ImplicitSurface`](crate::implicit_surface::ImplicitSurface) | Newton on the foot | `S (I + g S)⁻¹` |
 //!
 //! Where a shape has no tangent plane (on an axis, at an apex) the normal is one of those that it has beside that place,
@@ -50,6 +51,7 @@ pub use torus::Torus;
 
 use crate::height_field::{HeightField, View};
 use crate::mass_properties::MassProperties;
+use crate::mesh::TriangleMesh;
 use crate::polyhedra::Features;
 use crate::{Aabb, Jet, Looking, Point, Vector};
 use std::sync::Arc;
@@ -94,6 +96,11 @@ pub trait RigidShape: Send + Sync {
     /// Its facets, edges and corners, if these are all that bounds it.
     fn features(&self) -> Option<&Features> {
         None
+    }
+
+    /// Triangles whose corners lie on the surface, for pictures.
+    fn mesh(&self) -> Option<&TriangleMesh> {
+        self.features().filter(|features| !features.is_flat()).map(Features::mesh)
     }
 
     /// The height over (x, y) of the surface that is seen from above or below, by a closed form. A point on the axis where

@@ -13,6 +13,7 @@ pub use surface::{Surface, SurfaceJet};
 
 use crate::implicit_surface::ImplicitSurface;
 use crate::mesh::TriangleMesh;
+use crate::trimmed::TrimmedSolid;
 use crate::{Aabb, Point};
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ pub enum Shape {
     Surface(Box<Surface>),
     Mesh(Box<TriangleMesh>),
     Implicit(Arc<ImplicitSurface>),
+    Solid(Arc<TrimmedSolid>),
 }
 
 impl Shape {
@@ -32,12 +34,12 @@ impl Shape {
         match self {
             Shape::Point(_) => 0,
             Shape::Curve(_) => 1,
-            Shape::Surface(_) | Shape::Mesh(_) | Shape::Implicit(_) => 2,
+            Shape::Surface(_) | Shape::Mesh(_) | Shape::Implicit(_) | Shape::Solid(_) => 2,
         }
     }
 
-    /// Position at given parameters; those a shape does not have are ignored. `element` is the triangle of a mesh. An
-    /// implicit surface has no parameters: `None`.
+    /// Position at given parameters; those a shape does not have are ignored. `element` is the triangle of a mesh. Implicit
+    /// surfaces and solids have no parameters: `None`.
     ///
     /// # Panics
     /// If a mesh has no such element.
@@ -47,7 +49,7 @@ impl Shape {
             Shape::Curve(c) => c.position(parameters[0]),
             Shape::Surface(s) => s.position(parameters[0], parameters[1]),
             Shape::Mesh(m) => m.position(element, parameters),
-            Shape::Implicit(_) => return None,
+            Shape::Implicit(_) | Shape::Solid(_) => return None,
         })
     }
 
@@ -60,6 +62,7 @@ impl Shape {
             Shape::Surface(s) => hull(s.atlas.hull()),
             Shape::Mesh(m) => *m.bounds(),
             Shape::Implicit(s) => *s.mesh().bounds(),
+            Shape::Solid(s) => *s.hull(),
         }
     }
 
@@ -71,6 +74,7 @@ impl Shape {
             Shape::Surface(s) => s.size(),
             Shape::Mesh(m) => m.size(),
             Shape::Implicit(s) => s.mesh().size(),
+            Shape::Solid(s) => s.size(),
         }
     }
 }
@@ -96,5 +100,11 @@ impl From<TriangleMesh> for Shape {
 impl From<ImplicitSurface> for Shape {
     fn from(surface: ImplicitSurface) -> Self {
         Shape::Implicit(Arc::new(surface))
+    }
+}
+
+impl From<TrimmedSolid> for Shape {
+    fn from(solid: TrimmedSolid) -> Self {
+        Shape::Solid(Arc::new(solid))
     }
 }

@@ -115,7 +115,7 @@ impl Similarity {
         s.with(kind, pieces, |chart| self.surface_chart(chart), self.factor)
     }
 
-    /// The shape there; `None` of implicit surfaces, which keep their functions.
+    /// The shape there; `None` of implicit surfaces and solids, which keep their functions and faces.
     pub fn shape(&self, shape: &Shape) -> Option<Shape> {
         Some(match shape {
             Shape::Point(p) => Shape::Point(self.point(p)),
@@ -125,7 +125,7 @@ impl Similarity {
                 let vertices = m.vertices().iter().map(|v| self.point(v)).collect();
                 TriangleMesh::new(vertices, m.triangles()).ok()?.into()
             }
-            Shape::Implicit(_) => return None,
+            Shape::Implicit(_) | Shape::Solid(_) => return None,
         })
     }
 }

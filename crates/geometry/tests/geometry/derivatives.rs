@@ -368,7 +368,7 @@ impl Moving {
                 let j = s.jet(z[0], z[1]);
                 (j.x, vec![j.u, j.v], vec![vec![j.uu, j.uv], vec![j.uv, j.vv]])
             }
-            Shape::Mesh(_) | Shape::Implicit(_) => unreachable!("no such shape here"),
+            Shape::Mesh(_) | Shape::Implicit(_) | Shape::Solid(_) => unreachable!("no such shape here"),
         }
     }
 }
@@ -406,7 +406,7 @@ impl Jet {
             Shape::Point(p) => Jet::Point(*p),
             Shape::Curve(c) => Jet::Curve(c.jet(z[0])),
             Shape::Surface(s) => Jet::Surface(s.jet(z[0], z[1])),
-            Shape::Mesh(_) | Shape::Implicit(_) => unreachable!("no such shape here"),
+            Shape::Mesh(_) | Shape::Implicit(_) | Shape::Solid(_) => unreachable!("no such shape here"),
         }
     }
 

@@ -5,6 +5,7 @@ mod feb;
 mod inp;
 mod mesh;
 mod paths;
+mod step;
 mod vtu;
 
 use signorini_import::{Deck, ImportError, case, read};

@@ -54,12 +54,12 @@ pub struct RigidShown {
     pub size: f64,
     pub centre: Vector<3>,
     pub is_free: bool,
-    /// Its triangles, of a body of flat faces.
+    /// Its triangles: of a body of flat faces, or for pictures of a solid with curved ones.
     pub mesh: Option<(Vec<Vector<3>>, Vec<[u32; 3]>)>,
 }
 
 impl RigidShown {
-    /// Its surface within a box: points, the normals at the corners of each triangle, and triangles. Of a body of flat faces that lies in the
+    /// Its surface within a box: points, the normals at the corners of each triangle, and triangles. Of a body with triangles that lies in the
     /// box, or is free, its own triangles; of others those of `cubes` cubes along the box.
     pub fn surface(&self, room: [Vector<3>; 2], cubes: usize) -> (Vec<Vector<3>>, Vec<[Vector<3>; 3]>, Vec<[u32; 3]>) {
         let [low, high] = self.room(room);
@@ -155,8 +155,7 @@ impl SystemShown {
                 Kind::Rigid { shape, centre, is_free } => {
                     let pose = rigid_body::Pose::of(state);
                     let (rotation, shape, origin, now) = (pose.matrix(), Arc::clone(shape), *centre, pose.centre);
-                    let mesh = shape.features().filter(|features| !features.is_flat()).map(|features| {
-                        let mesh = features.mesh();
+                    let mesh = shape.mesh().map(|mesh| {
                         let placed = mesh.vertices().iter().map(|x| now + rotation * (x - origin));
                         (placed.collect(), mesh.triangles().to_vec())
                     });

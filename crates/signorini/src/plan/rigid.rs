@@ -180,7 +180,7 @@ pub(super) fn read<const D: usize>(
     let [displacement, rotation] = motion::<D>(planner, rigid)?;
     let bounds = match &rigid.shape {
         Shape::LevelSet(key) => Some(Aabb::new(keys.vector(&key.min, LENGTH)?, keys.vector(&key.max, LENGTH)?)),
-        Shape::Box(_) => shape.bounds(),
+        Shape::Box(_) | Shape::Step(_) => shape.bounds(),
         stated => stated.closed_form().and_then(|_| shape.bounds()),
     };
     Ok(RigidBody { name: name.to_string(), shape, inside, displacement, rotation, bounds })
@@ -276,6 +276,10 @@ impl<const D: usize> BesideSolids<'_, '_, D> {
             Shape::Stl(key) => {
                 self.check_in_space(shape, "triangulated surface")?;
                 polyhedron(planner.closed_mesh(key)?)
+            }
+            Shape::Step(key) => {
+                self.check_in_space(shape, "solid of a STEP file")?;
+                planner.step_solids(key)?
             }
             Shape::File(key) => {
                 self.check_in_space(shape, "triangulated surface")?;

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The types of shapes, in the order of the manual.
-pub const TYPES: [&str; 30] = [
+pub const TYPES: [&str; 31] = [
     "point",
     "segment",
     "polyline",
@@ -43,6 +43,7 @@ pub const TYPES: [&str; 30] = [
     "lagrange_triangle",
     "triangle_mesh",
     "implicit",
+    "step",
 ];
 
 /// Reads one partner of a query; files are looked for in `folder`.
@@ -212,6 +213,13 @@ fn read(name: &str, f: &mut Fields<'_>, folder: &Path) -> Result<Shape, FieldErr
             surface(f, Surface::lagrange_triangle(&nodes))
         }
         "triangle_mesh" => mesh(f, folder).map(Shape::from),
+        "step" => {
+            let path = folder.join(f.text("file")?);
+            let number = f.optional("solid").map(|_| f.count("solid")).transpose()?;
+            let bytes = std::fs::read(&path).map_err(|e| f.error("file", format!("`{}`: {e}", path.display())))?;
+            let solid = super::step_solid(&bytes, number);
+            solid.map(Shape::from).map_err(|e| f.error("file", format!("`{}`: {e}", path.display())))
+        }
         "implicit" => {
             let mut body = f.required("body")?;
             let inner = f.error("body", "").path;

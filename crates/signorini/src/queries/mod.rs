@@ -35,6 +35,9 @@ use shapes::Shapes;
 pub use signorini_geometry::closest::Query;
 use signorini_geometry::closest::{Certificate, closest};
 use signorini_geometry::shape::Shape;
+use signorini_geometry::similarity::Similarity;
+use signorini_geometry::trimmed::TrimmedSolid;
+use signorini_import::step::{Pick, StepError, StepFile};
 
 /// What was done with a file of queries.
 #[derive(Clone, Debug, Default)]
@@ -236,8 +239,8 @@ pub fn answer_file(
 }
 
 /// Answers for each point of a file where the shape of another file comes closest to it, like [`answer_file`]; the
-/// answers are called after the rows, counted from zero. The shape is a triangle mesh (STL, OBJ, PLY) or, in JSON, a
-/// partner of a query.
+/// answers are called after the rows, counted from zero. The shape is a triangle mesh (STL, OBJ, PLY), the solid of a STEP file
+/// or, in JSON, a partner of a query.
 ///
 /// # Errors
 /// Files that cannot be read or written, points or a shape that are wrong; then nothing is written.
@@ -275,16 +278,29 @@ pub fn answer_points(
     Ok(report)
 }
 
+/// The one solid of a STEP file, or that with a number, counted from 1.
+fn step_solid(bytes: &[u8], number: Option<usize>) -> Result<TrimmedSolid, String> {
+    let told = |e: StepError| format!("{e}; {}", e.help);
+    let file = StepFile::new(bytes).map_err(told)?;
+    let pick = number.map_or(Pick::All, Pick::Number);
+    let mut found = file.solids(&pick, &Similarity::scaling(1.0)).map_err(told)?;
+    match found.len() {
+        1 => Ok(found.remove(0).1),
+        n => Err(format!("{n} solids; a query has one: choose it in JSON by its number, {{\"type\": \"step\", \"file\": \"…\", \"solid\": 1}}")),
+    }
+}
+
 fn read_shape(path: &Path) -> Result<Shape, QueriesError> {
     let wrong = |message: String| QueriesError::Input { path: path.to_path_buf(), message };
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
         "stl" | "obj" | "ply" => mesh_file::read(path).map(Shape::from).map_err(|e| wrong(e.message)),
+        "step" | "stp" => step_solid(&read_bytes(path)?, None).map(Shape::from).map_err(wrong),
         "json" => {
             let text = String::from_utf8(read_bytes(path)?).map_err(|e| wrong(format!("no text: {e}")))?;
             shapes::build(&text, path.parent().unwrap_or(Path::new(""))).map_err(|e| wrong(e.to_string()))
         }
-        other => Err(wrong(format!("`{other}` is not a format of shapes; valid are json, stl, obj and ply"))),
+        other => Err(wrong(format!("`{other}` is not a format of shapes; valid are json, stl, obj, ply and step"))),
     }
 }
 

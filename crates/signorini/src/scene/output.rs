@@ -111,6 +111,11 @@ impl Tessellation {
             }
             Shape::Mesh(m) => out.add_mesh(m.vertices(), m.triangles()),
             Shape::Implicit(s) => out.add_mesh(s.mesh().vertices(), s.mesh().triangles()),
+            Shape::Solid(s) => {
+                if let Some(mesh) = s.mesh() {
+                    out.add_mesh(mesh.vertices(), mesh.triangles());
+                }
+            }
         }
         out
     }

@@ -249,8 +249,8 @@ fn points_of_a_file_are_answered_in_every_format() {
     std::fs::write(path("points.csv"), "1,2,3\n4,5\n").unwrap();
     let error = answer("points.csv", "body.json", "none.npy").unwrap_err().to_string();
     assert!(error.contains("points.csv: line 2: 2 entries") && !path("none.npy").exists(), "{error}");
-    let error = answer("points.csv", "body.step", "none.npy").unwrap_err().to_string();
-    assert!(error.contains("body.step: `step` is not a format of shapes"), "{error}");
+    let error = answer("points.csv", "body.iges", "none.npy").unwrap_err().to_string();
+    assert!(error.contains("body.iges: `iges` is not a format of shapes"), "{error}");
 }
 
 #[test]

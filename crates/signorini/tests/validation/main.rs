@@ -41,6 +41,7 @@ mod solid_theory;
 mod solids;
 mod stability;
 mod statement;
+mod step_bodies;
 mod sweep;
 mod systems;
 mod unit;

@@ -61,7 +61,7 @@ impl Planner<'_> {
                 }))
             }
         };
-        let (sites, size) = self.points_of(key, low, high)?;
+        let (sites, size) = self.points_of(key, shape.as_ref(), low, high)?;
         let mut mass = None;
         if let Some(Stated::Free(free)) = &key.motion
             && let Some(found) = self.mass_of(name, key, free, shape.as_ref(), centre)?
@@ -221,7 +221,12 @@ impl Planner<'_> {
         }
         let has_none = matches!(
             &key.shape,
-            Shape::Nurbs(_) | Shape::Stl(_) | Shape::File(_) | Shape::Triangles(_) | Shape::LevelSet(_)
+            Shape::Nurbs(_)
+                | Shape::Stl(_)
+                | Shape::Step(_)
+                | Shape::File(_)
+                | Shape::Triangles(_)
+                | Shape::LevelSet(_)
         );
         let acts = |on: &str| on == name || on.starts_with(&format!("{name}:"));
         let load = self.problem.loads.iter().find(|(_, load)| has_none && acts(&load.on));
@@ -235,8 +240,14 @@ impl Planner<'_> {
     }
 
     /// The points of a rigid body that are tested, and its size: a ball at its centre, a box at its corners, a triangle mesh
-    /// at its vertices.
-    fn points_of(&self, key: &Rigid, low: Point<3>, high: Point<3>) -> Result<(Vec<RigidSite>, f64), CaseError> {
+    /// at its vertices, a solid of a STEP file at the corners of its triangles, which lie on its faces.
+    fn points_of(
+        &self,
+        key: &Rigid,
+        shape: &dyn RigidShape,
+        low: Point<3>,
+        high: Point<3>,
+    ) -> Result<(Vec<RigidSite>, f64), CaseError> {
         let outside = key.side != Some(Side::Inside);
         Ok(match &key.shape {
             Shape::Sphere(sphere) => {
@@ -256,6 +267,10 @@ impl Planner<'_> {
                 of_block(&body, outside)
             }
             Shape::Stl(file) => of_mesh(&self.closed_mesh(file)?, outside),
+            Shape::Step(_) => match shape.mesh() {
+                Some(mesh) => of_mesh(mesh, outside),
+                None => (Vec::new(), shape.bounds().map_or((high - low).norm(), |b| b.size().norm())),
+            },
             Shape::File(file) => of_mesh(&self.boundary_of_file(file)?, outside),
             Shape::Triangles(arrays) => of_mesh(&self.surface_of_arrays(arrays)?, outside),
             _ => (Vec::new(), (high - low).norm()),

@@ -173,6 +173,29 @@ impl System {
         }
     }
 
+    /// Solves for a time as [`System::solve`] does, with Newton's method started from a state of that time: one of other laws.
+    ///
+    /// # Errors
+    /// Why there is no state.
+    pub fn solve_near(
+        &mut self,
+        from: &SystemState,
+        guess: &SystemState,
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let kept = self.histories();
+        let start = self.begin(from, guess.time)?;
+        let inner = start.bodies.into_iter().map(|body| body.internal);
+        let bodies = guess.bodies.iter().cloned().zip(inner).map(|(body, internal)| BodyState { internal, ..body });
+        let near = SystemState { bodies: bodies.collect(), predictions: start.predictions, ..guess.clone() };
+        let found = self
+            .outer(&near, guess.time, report)
+            .and_then(|found| self.check_inside(&found.0, false).map(|()| found))
+            .and_then(|found| self.on_a_stable_branch(found, guess.time, report));
+        self.end();
+        found.inspect_err(|_| self.put_back(&kept))
+    }
+
     /// The state from which an increment to a time starts, what is prescribed brought there.
     pub(crate) fn begin(&mut self, from: &SystemState, time: f64) -> Result<SystemState, IncrementError> {
         let mut start = SystemState { time, ..from.clone() };

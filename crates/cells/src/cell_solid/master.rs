@@ -134,8 +134,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
     /// it was looked for: a search along the boundary may end behind the material beside the gap.
     fn met(&self, x: &Point<3>, reach: f64, except: Option<&Site>) -> Option<(usize, OnSheets<D>)> {
         let own = except.map(|site| &self.solid.points[site.patch as usize]);
-        let number =
-            self.nearest_point(x, reach, |other| own.is_none_or(|own| faces(own, &other.x, &other.normal)))?;
+        let number = self.nearest_point(x, reach, |other| own.is_none_or(|own| faces(own, &other.x, &other.normal)))?;
         let found = self.closest(&Point::<D>::from_fn(|k, _| x[k]), number)?;
         let normal = match &found.outward {
             Some(normal) => *normal,

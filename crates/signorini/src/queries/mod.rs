@@ -286,7 +286,9 @@ fn step_solid(bytes: &[u8], number: Option<usize>) -> Result<TrimmedSolid, Strin
     let mut found = file.solids(&pick, &Similarity::scaling(1.0)).map_err(told)?;
     match found.len() {
         1 => Ok(found.remove(0).1),
-        n => Err(format!("{n} solids; a query has one: choose it in JSON by its number, {{\"type\": \"step\", \"file\": \"…\", \"solid\": 1}}")),
+        n => Err(format!(
+            "{n} solids; a query has one: choose it in JSON by its number, {{\"type\": \"step\", \"file\": \"…\", \"solid\": 1}}"
+        )),
     }
 }
 

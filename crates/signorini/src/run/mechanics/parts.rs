@@ -7,7 +7,9 @@ use crate::plan::mechanics::other_friction::laws_with_friction_times;
 use crate::problem::CaseError;
 use crate::report::{ContactEvent, Reason, Warning, WarningKind};
 use serde::{Deserialize, Serialize};
-use signorini_mechanics::{BodyState, IncrementError, IncrementResult, Moved, Moving, SiteResult, Stability};
+use signorini_mechanics::{
+    BodyState, IncrementError, IncrementResult, Moved, Moving, SiteResult, Stability, SystemState,
+};
 use signorini_solve::Progress;
 
 /// Share of an increment below which it is not cut any more.
@@ -26,6 +28,9 @@ const ROUNDING: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 1000;
 const LEAST_ITERATIONS: usize = 300;
 const MOST_SOLVED: usize = 800_000;
+
+/// A state, and how it was found.
+type Solution = (SystemState, IncrementResult);
 
 /// What decides how increments are cut, from one to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -159,6 +164,26 @@ impl MechanicsModel {
                 return Err(error);
             }
             total.residuals.append(&mut seen);
+            let curable = |error: &IncrementError| {
+                !matches!(
+                    error,
+                    IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
+                )
+            };
+            let is_last = match &found {
+                Ok(_) => false,
+                Err(IncrementError::Interrupted) => is_given_up,
+                Err(error) => curable(error) && (part <= smallest || whole <= 0.0),
+            };
+            let other = if is_last { self.by_other_friction(target, progress) } else { None };
+            let (found, slides) = match other {
+                Some(Ok(state)) => {
+                    spent = total.residuals.len();
+                    (Ok(*state), None)
+                }
+                Some(Err(slides)) => (found, Some(slides)),
+                None => (found, None),
+            };
             match found {
                 Ok((state, mut result)) => {
                     if may_be_rejected {
@@ -212,19 +237,13 @@ impl MechanicsModel {
                     };
                 }
                 Err(IncrementError::Interrupted) if is_given_up => {
-                    let slides = self.lacks_friction(target, progress);
                     let remedy = slides.unwrap_or_else(|| NO_EQUILIBRIUM.to_string());
                     return Ok(Err(given_up(reason.as_ref(), target, total.residuals, &remedy)));
                 }
                 Err(error) => {
-                    let curable = !matches!(
-                        error,
-                        IncrementError::Interrupted | IncrementError::Free { .. } | IncrementError::Unstable { .. }
-                    );
-                    if !curable || part <= smallest || whole <= 0.0 {
+                    if is_last || !curable(&error) {
                         let mut failure = self.failed(&error, total.residuals);
                         if let IncrementError::NotConverged { .. } = &error {
-                            let slides = self.lacks_friction(target, progress);
                             failure.text += &slides.map_or(String::new(), |slides| format!("; {slides}"));
                         }
                         if reached > before {
@@ -257,48 +276,74 @@ impl MechanicsModel {
             .then(|| format!("; at t = {:.6}, the last equilibrium, {}", self.state.time, list.join(", ")))
     }
 
-    /// What slides where there is an equilibrium only if friction is `MORE` times what the case states, in words. The state stays as
-    /// it is.
-    fn lacks_friction(&mut self, target: f64, progress: &mut dyn Progress) -> Option<String> {
-        if self.plan.system.dynamics.is_some() || !self.has_state_with(MORE, target, progress) {
+    /// Where there seems to be no equilibrium, one that is found from those with more or with less friction, which come nearer to what
+    /// the case states; or else, in words, what slides because there is one with more friction only. The state stays as it is.
+    fn by_other_friction(&mut self, target: f64, progress: &mut dyn Progress) -> Option<Result<Box<Solution>, String>> {
+        if self.plan.system.dynamics.is_some() || self.plan.system.is_rigid() {
             return None;
         }
+        let from_more = self.with_friction(MORE, None, target, progress)?.0;
+        let from_less = self.with_friction(1.0 / MORE, None, target, progress).map(|found| found.0);
         // What rests with less friction as well does not slide for want of it.
-        if self.has_state_with(1.0 / MORE, target, progress) {
-            return Some(NOT_FOUND.to_string());
+        let slides = from_less.is_none();
+        for (mut near, towards) in [(Some(from_more), 1.0 / MORE), (from_less, MORE)] {
+            for step in 1..=STEPS {
+                let Some(guess) = near.take() else { break };
+                let left = 1.0 - step as f64 / STEPS as f64;
+                let found = self.with_friction(towards.powf(-left), Some(&guess), target, progress);
+                match found {
+                    Some(found) if step == STEPS => return Some(Ok(Box::new(found))),
+                    found => near = found.map(|found| found.0),
+                }
+            }
         }
-        Some(format!(
+        if !slides {
+            return Some(Err(NOT_FOUND.to_string()));
+        }
+        Some(Err(format!(
             "with {MORE} times the friction there is an equilibrium at t = {target:.6}, so friction is too small, and what it \
              does not hold slides{}; hold it otherwise, or use more friction or a smaller load",
             self.at_the_limit().unwrap_or_default()
-        ))
+        )))
     }
 
-    /// Whether there is an equilibrium with so many times the friction.
-    fn has_state_with(&mut self, times: f64, target: f64, progress: &mut dyn Progress) -> bool {
+    /// The state with so many times the friction, from the last one or from a guess; with the friction that the case states histories
+    /// go on from it.
+    fn with_friction(
+        &mut self,
+        times: f64,
+        guess: Option<&SystemState>,
+        target: f64,
+        progress: &mut dyn Progress,
+    ) -> Option<Solution> {
         let system = &mut self.plan.system;
         let names: Vec<String> = system.contacts.iter().map(|c| c.name().to_string()).collect();
-        let Ok(laws) = laws_with_friction_times(&self.plan.head.problem, &names, times) else { return false };
+        let laws = laws_with_friction_times(&self.plan.head.problem, &names, times).ok()?;
         if progress.interrupted() || laws.iter().all(Option::is_none) {
-            return false;
+            return None;
         }
         let kept = system.histories();
         let stated: Vec<_> = (system.contacts.iter_mut().zip(laws))
             .map(|(contact, law)| Some(contact.law_mut().friction.replace(law?)))
             .collect();
-        let mut iterations = 0;
+        let (mut iterations, most) = (0, if guess.is_some() { NEARBY } else { LEAST_ITERATIONS });
         let mut goes_on = |_: usize, _: f64| {
             iterations += 1;
-            iterations < LEAST_ITERATIONS && !progress.interrupted()
+            iterations < most && !progress.interrupted()
         };
-        let found = system.solve(&self.state, target, &mut goes_on);
+        let found = match guess {
+            Some(guess) => system.solve_near(&self.state, guess, &mut goes_on),
+            None => system.solve(&self.state, target, &mut goes_on),
+        };
         for (contact, law) in system.contacts.iter_mut().zip(stated) {
             if let Some(law) = law {
                 contact.law_mut().friction = law;
             }
         }
-        system.put_back(&kept);
-        found.is_ok()
+        if times != 1.0 || found.is_err() {
+            system.put_back(&kept);
+        }
+        found.ok()
     }
 
     /// What happened to the contacts in a part of an increment.
@@ -331,6 +376,10 @@ fn not_kept(error: f64, [from, to]: [f64; 2]) -> Warning {
 /// How much more friction is tried where there seems to be no equilibrium, and how much less: what rests with more, and not with
 /// less, slides.
 const MORE: f64 = 4.0;
+/// Steps, each by the same factor, from there to the friction that the case states.
+const STEPS: u32 = 4;
+/// Iterations for one of them: the state before is near.
+const NEARBY: usize = 60;
 /// Part of the available friction of a contact, in the mean over its pressure, that is all of it but for the size of increments.
 const NEAR_LIMIT: f64 = 0.95;
 const NOT_FOUND: &str = "there are equilibria with more and with less friction, so the iteration does not find this one: use more \

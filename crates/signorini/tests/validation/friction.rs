@@ -322,3 +322,33 @@ to = 1
     let exact = 180.0 - (0.1f64 / 0.3).atan().to_degrees();
     assert!((angle - exact).abs() < 0.5, "{angle} for {exact} degrees");
 }
+
+/// Newton's method goes round among nodes of a belt that stick and slip; from states with more friction it finds the one that the
+/// theorem of Euler and Eytelwein tells, with the radius in the middle of the belt.
+#[test]
+fn a_belt_that_slides_is_found_from_one_that_sticks() {
+    let case = r#"
+space = "plane_strain"
+[bodies.belt.solid]
+mesh.box = { min = [0, 2], max = [1, 2.05], cells = [40, 1], map = ["-y*cos(pi*x)", "y*sin(pi*x)"] }
+degree = 2
+material.linear_elastic = { youngs_modulus = 2000, poissons_ratio = 0 }
+[bodies.drum.rigid]
+shape.sphere = { center = [0, 0], radius = 2 }
+[supports.hold]
+on = "belt:right"
+displacement = ["free", 0]
+[loads.pull]
+on = "belt:left"
+force = [0, "-0.5*t"]
+[contacts.wrap]
+between = ["belt:bottom", "drum"]
+friction.coulomb = { mu = 0.3 }
+[[steps]]
+to = 0.5
+"#;
+    let found = summary(case, &set(&[]));
+    let held = -number(&last_step(&found)["support_forces"]["hold"][1]);
+    let exact = 0.25 * (-0.3 * std::f64::consts::PI * 2.0 / 2.025).exp();
+    assert!((held / exact - 1.0).abs() < 0.03, "{held} for {exact}");
+}

@@ -4,6 +4,7 @@ mod accuracy;
 mod events;
 mod frame;
 mod oscillation;
+mod other_friction;
 mod parts;
 mod path;
 pub(crate) mod recovered;

@@ -4,10 +4,10 @@
 //!
 //! - the distance to a plane, cylinder, cone, sphere or torus has one local minimum, in closed form, or a whole circle or sphere
 //!   of them, of which one is an edge unless all are of the face;
-//! - splines are searched through bounded cells ([`spline_tree`]), edges by their certified closest point ([`crate::closest`]).
+//! - splines are searched through bounded cells (`spline_tree`), edges by their certified closest point ([`crate::closest`]).
 //!
 //! All of them stand in one tree of boxes, and what cannot hold anything closer is not looked at. A closest point on a surface
-//! counts where the face contains it ([`region`]). The side is that of the pseudo-normal (Baerentzen & Aanaes 2005): of a face
+//! counts where the face contains it (`region`). The side is that of the pseudo-normal (Baerentzen & Aanaes 2005): of a face
 //! its normal, of an edge the mean of both faces, of a vertex the mean over the angles of the faces around.
 
 mod closest;

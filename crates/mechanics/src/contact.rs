@@ -140,9 +140,10 @@ impl Contact {
         if slave.0 == master.0 {
             sites.iter_mut().for_each(|s| s.weight *= 0.5);
         }
-        let beyond_edges = edges::beyond_edges(slave.1, &sites, sampling);
         let start = slave.1.start();
         let placed: Vec<SlavePoint> = sites.iter().map(|site| slave.1.placed(&start, site)).collect();
+        let has_edges = sampling == Sampling::Nodes && !slave.1.is_rigid();
+        let beyond_edges = if has_edges { edges::beyond_edges(&sites, &placed) } else { vec![Vec::new(); sites.len()] };
         let spacing = inside::distance(&placed);
         let both_rigid = slave.1.is_rigid() && master.1.is_rigid();
         let enforcement = if both_rigid { enforcement.between_rigid_bodies() } else { enforcement };
@@ -246,7 +247,7 @@ impl Contact {
                 let reach = self.reach + placed.radius;
                 master.along(&placed.x, reach).or_else(|| master.nearest(&placed.x, reach, None))
             }
-            _ => placed.met(master, (self.reach, || self.spacing), except),
+            _ => placed.met(master, (self.reach, self.spacing), except),
         };
         let Some(met) = met else { return (placed, None) };
         if self.is_met_beyond_an_edge(k, sides.slave, (&placed, &met)) {

@@ -156,24 +156,29 @@ impl System {
         }
         let kept = self.histories();
         let start = self.begin(from, time)?;
+        self.solve_from(&start, (from, &kept), report)
+    }
+
+    /// Ends an increment that was begun: solves it from where Newton's method is to start.
+    fn solve_from(
+        &mut self,
+        start: &SystemState,
+        (from, kept): (&SystemState, &[[Vec<f64>; 2]]),
+        report: &mut dyn FnMut(usize, f64) -> bool,
+    ) -> Result<(SystemState, IncrementResult), IncrementError> {
+        let time = start.time;
         let found = self
-            .outer(&start, time, report)
+            .outer(start, time, report)
             .and_then(|found| self.check_inside(&found.0, false).map(|()| found))
             .and_then(|found| self.on_a_stable_branch(found, time, report));
         self.end();
-        match found {
-            Ok((state, mut result)) => {
-                self.locate_instability(from, (time, &kept), &mut result, report)?;
-                Ok((state, result))
-            }
-            Err(error) => {
-                self.put_back(&kept);
-                Err(error)
-            }
-        }
+        let (state, mut result) = found.inspect_err(|_| self.put_back(kept))?;
+        self.locate_instability(from, (time, kept), &mut result, report)?;
+        Ok((state, result))
     }
 
-    /// Solves for a time as [`System::solve`] does, with Newton's method started from a state of that time: one of other laws.
+    /// Solves for a time as [`System::solve`] does, at the temperatures that are known, with Newton's method started from a state of
+    /// that time: one of other laws.
     ///
     /// # Errors
     /// Why there is no state.
@@ -188,12 +193,7 @@ impl System {
         let inner = start.bodies.into_iter().map(|body| body.internal);
         let bodies = guess.bodies.iter().cloned().zip(inner).map(|(body, internal)| BodyState { internal, ..body });
         let near = SystemState { bodies: bodies.collect(), predictions: start.predictions, ..guess.clone() };
-        let found = self
-            .outer(&near, guess.time, report)
-            .and_then(|found| self.check_inside(&found.0, false).map(|()| found))
-            .and_then(|found| self.on_a_stable_branch(found, guess.time, report));
-        self.end();
-        found.inspect_err(|_| self.put_back(&kept))
+        self.solve_from(&near, (from, &kept), report)
     }
 
     /// The state from which an increment to a time starts, what is prescribed brought there.

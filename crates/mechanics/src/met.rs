@@ -24,7 +24,7 @@ impl SlavePoint {
     pub(crate) fn met(
         &self,
         master: &dyn Master,
-        (reach, within): (f64, impl FnOnce() -> f64),
+        (reach, within): (f64, f64),
         except: Option<&Site>,
     ) -> Option<MasterProjection> {
         let nearest = master.nearest(&self.x, reach + self.radius, except)?;
@@ -40,7 +40,7 @@ pub(crate) fn looked_at(
     master: &dyn Master,
     (x, outward): (&Point<3>, Option<Vector<3>>),
     nearest: &MasterProjection,
-    within: impl FnOnce() -> f64,
+    within: f64,
 ) -> Option<MasterProjection> {
     let outward = outward?.try_normalize(0.0)?;
     let (gap, normal) = nearest.gap(x)?;
@@ -48,7 +48,7 @@ pub(crate) fn looked_at(
     if looks >= FULLY {
         return None;
     }
-    let mut looking = Looking { outward, least: SEEN.max(MUCH_MORE * looks), within: within() };
+    let mut looking = Looking { outward, least: SEEN.max(MUCH_MORE * looks), within };
     if gap.abs() <= looking.rounding() {
         // On an edge the normal is the mean of those of its faces.
         looking.least = SEEN.max(looks + MORE_THAN_MEAN * (1.0 - looks));

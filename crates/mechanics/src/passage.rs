@@ -67,7 +67,7 @@ fn meeting(master: &dyn Master, x: &Point<3>, radius: f64) -> Option<Meeting> {
 /// What a point of a surface with an outward normal meets: beside an edge the face that it looks at.
 fn looked_at(master: &dyn Master, x: &Point<3>, outward: Vector<3>, spacing: f64) -> Option<Meeting> {
     let nearest = master.nearest(x, f64::INFINITY, None)?;
-    met::looked_at(master, (x, Some(outward)), &nearest, || spacing).unwrap_or(nearest).gap(x)
+    met::looked_at(master, (x, Some(outward)), &nearest, spacing).unwrap_or(nearest).gap(x)
 }
 
 /// A deformable master on a way: a surface that moves is costly to search, so it is known at a few stages, no farther apart

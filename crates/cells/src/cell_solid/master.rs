@@ -105,7 +105,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
 
     /// The closest point from a quadrature point.
     fn closest(&self, target: &Point<D>, number: usize) -> Option<OnSheets<D>> {
-        let search = Search { master: self, target, number, size: self.solid.cell_size(&self.solid.points[number]) };
+        let search = Search::new(self, target, number);
         let own = self.solid.sheets.number(number);
         if own.is_none()
             && let Some(found) = search.on_facets()
@@ -125,7 +125,7 @@ impl<'a, const D: usize> BoundaryMaster<'a, D> {
         if self.solid.sheets.number(number).is_none() {
             return self.closest(target, number);
         }
-        let search = Search { master: self, target, number, size: self.solid.cell_size(&self.solid.points[number]) };
+        let search = Search::new(self, target, number);
         let alone = vec![self.solid.sheets.at(number, &self.solid.points[number])];
         search.on(&alone).filter(|found| search.is_limit(found)).map(|found| OnSheets::new(found, alone))
     }
@@ -288,7 +288,11 @@ struct Search<'a, const D: usize> {
     size: f64,
 }
 
-impl<const D: usize> Search<'_, D> {
+impl<'a, const D: usize> Search<'a, D> {
+    fn new(master: &'a BoundaryMaster<'a, D>, target: &'a Point<D>, number: usize) -> Self {
+        Search { master, target, number, size: master.solid.cell_size(&master.solid.points[number]) }
+    }
+
     /// The closest point on active sheets, unless it is far from the start.
     fn on(&self, active: &Active<D>) -> Option<Found<D>> {
         let start = &self.master.solid.points[self.number];

@@ -3,7 +3,7 @@
 use super::Contact;
 use crate::body::{Body, BodyState};
 use crate::met::MUCH_MORE;
-use crate::points::{MasterProjection, Sampling, Site, SlavePoint};
+use crate::points::{MasterProjection, Site, SlavePoint};
 use signorini_geometry::Vector;
 use std::collections::BTreeMap;
 
@@ -25,19 +25,13 @@ impl Contact {
 }
 
 /// The sites at the node of each site: a node at an edge has one on each smooth part of the surface.
-pub(super) fn beyond_edges(body: &dyn Body, sites: &[Site], sampling: Sampling) -> Vec<Vec<Site>> {
-    let none = vec![Vec::new(); sites.len()];
-    if sampling != Sampling::Nodes || body.is_rigid() {
-        return none;
-    }
-    let start = body.start();
-    let placed: Vec<SlavePoint> = sites.iter().map(|site| body.placed(&start, site)).collect();
+pub(super) fn beyond_edges(sites: &[Site], placed: &[SlavePoint]) -> Vec<Vec<Site>> {
     // A node is moved by unknowns of its own.
     let mut at = BTreeMap::<Vec<u32>, Vec<usize>>::new();
     for (k, point) in placed.iter().enumerate().filter(|(_, point)| point.outward.is_some()) {
         at.entry(point.functions.iter().map(|f| f.unknown).collect()).or_default().push(k);
     }
-    let mut out = none;
+    let mut out = vec![Vec::new(); sites.len()];
     for list in at.values().filter(|list| list.len() > 1) {
         for k in list {
             let same = |other: &&usize| *other != k && (placed[**other].x - placed[*k].x).norm() == 0.0;

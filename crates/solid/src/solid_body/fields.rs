@@ -126,10 +126,8 @@ impl<const D: usize> SolidBody<D> {
         let gradients = &at.rows * &own;
         let plane_stress = self.bodies.space == Space::PlaneStress;
         // The pressure as it acts in the cell: projected where the dilatation is.
-        let projected = pressure.map(|coefficients| {
-            let piece = self.piece(self.pieces.of(cell));
-            self.polynomials(cell, &piece.cells[piece.number_of(cell)].1, table).tr_mul(coefficients)
-        });
+        let projected =
+            pressure.map(|coefficients| self.polynomials(cell, &self.pieces.place(cell), table).tr_mul(coefficients));
         let pressure = |q: usize, f: &Matrix3<f64>, projected: &Option<DVector<f64>>| match projected {
             Some(p) => p[q],
             None => {

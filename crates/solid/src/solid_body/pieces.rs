@@ -40,6 +40,12 @@ impl Pieces {
         self.of.get(cell).map_or(cell, |piece| *piece as usize)
     }
 
+    /// The place of a cell in its piece.
+    pub fn place(&self, cell: usize) -> Window {
+        let own = self.blocks.get(self.of(cell)).and_then(|cells| cells.iter().find(|(own, _)| *own as usize == cell));
+        own.map_or(ALONE, |(_, place)| *place)
+    }
+
     pub fn cells(&self, piece: usize) -> Cow<'_, [(u32, Window)]> {
         match self.blocks.get(piece) {
             Some(cells) => Cow::Borrowed(cells),

@@ -100,7 +100,7 @@ impl<const D: usize> SolidBody<D> {
         let rows: Vec<DMatrix<f64>> = inner.iter().map(of_points).collect();
         let moduli: Vec<Vec<f64>> = inner.iter().map(|at| at.laws.iter().map(modulus).collect()).collect();
         let pressure = fit.solve(&(fit.products(&moduli) * fit.coefficients_by_unknown(piece, &rows)));
-        let psi = self.polynomials(cell, &piece.cells[piece.number_of(cell)].1, here);
+        let psi = self.polynomials(cell, &self.pieces.place(cell), here);
         pressure.tr_mul(&psi.column(0))
     }
 }

@@ -32,29 +32,34 @@ impl MechanicsModel {
         if self.plan.system.dynamics.is_some() || self.plan.system.is_rigid() {
             return None;
         }
-        let from_more = self.with_friction(MORE, None, target, progress)?.0;
-        let from_less = self.with_friction(1.0 / MORE, None, target, progress).map(|found| found.0);
-        // What rests with less friction as well does not slide for want of it.
-        let slides = from_less.is_none();
-        for (mut near, towards) in [(Some(from_more), 1.0 / MORE), (from_less, MORE)] {
-            for step in 1..=STEPS {
-                let Some(guess) = near.take() else { break };
-                let left = 1.0 - step as f64 / STEPS as f64;
-                let found = self.with_friction(towards.powf(-left), Some(&guess), target, progress);
-                match found {
-                    Some(found) if step == STEPS => return Some(Ok(Box::new(found))),
-                    found => near = found.map(|found| found.0),
-                }
-            }
+        let (from_more, _) = self.with_friction(MORE, None, target, progress)?;
+        if let Some(found) = self.brought_back(from_more, MORE, progress) {
+            return Some(Ok(Box::new(found)));
         }
-        if !slides {
-            return Some(Err(NOT_FOUND.to_string()));
+        // What rests with less friction as well does not slide for want of it.
+        if let Some((from_less, _)) = self.with_friction(1.0 / MORE, None, target, progress) {
+            let found = self.brought_back(from_less, 1.0 / MORE, progress);
+            return Some(found.map(Box::new).ok_or_else(|| NOT_FOUND.to_string()));
         }
         Some(Err(format!(
             "with {MORE} times the friction there is an equilibrium at t = {target:.6}, so friction is too small, and what it \
              does not hold slides{}; hold it otherwise, or use more friction or a smaller load",
             self.at_the_limit().unwrap_or_default()
         )))
+    }
+
+    /// The state with the friction that the case states, from one with so many times of it. None with heat: friction heats, and the
+    /// temperatures would be those of the last state.
+    fn brought_back(&mut self, mut near: SystemState, times: f64, progress: &mut dyn Progress) -> Option<Solution> {
+        if self.plan.system.heat.is_some() {
+            return None;
+        }
+        let target = near.time;
+        for step in 1..STEPS {
+            let left = 1.0 - f64::from(step) / f64::from(STEPS);
+            (near, _) = self.with_friction(times.powf(left), Some(&near), target, progress)?;
+        }
+        self.with_friction(1.0, Some(&near), target, progress)
     }
 
     /// The state with so many times the friction, from the last one or from a guess; with the friction that the case states histories
